@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+namespace rayuela {
+
+enum class AcceleratorKind : std::uint8_t { list, kd };
+
+/// How a kd-tree chooses its cuts.
+enum class KdSplit : std::uint8_t {
+    median,  ///< The paper's: across the longest axis of the node's box, half of its primitives on each side.
+    sah,     ///< Surface area heuristic (MacDonald & Booth 1990; Wald & Havran 2006).
+};
+
+inline constexpr int kMinLeafSize = 1;
+inline constexpr int kMaxLeafSize = 1 << 20;
+
+struct AccelSettings {
+    AcceleratorKind kind = AcceleratorKind::kd;
+    int leaf_size = 16;  ///< Primitives a leaf should hold at most, in [kMinLeafSize, kMaxLeafSize].
+    KdSplit split = KdSplit::sah;
+
+    bool operator==(const AccelSettings&) const = default;
+};
+
+}  // namespace rayuela

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/materials/value.h"
+#include "core/math/field.h"
+
+namespace rayuela {
+
+/// Glass or water: exact Fresnel reflection and refraction. GGX with alpha = roughness^2 when rough.
+struct Dielectric {
+    static constexpr std::string_view kType = "dielectric", kLabel = "Glass", kTip = "Clear or frosted glass, water.";
+
+    float ior = 1.5f;  ///< Of the inside, relative to the outside.
+    ColorValue tint{Color(1), nullptr};  ///< Multiplies reflected and refracted light alike.
+    FloatValue roughness{0, nullptr, 0};
+
+    template <typename Self, typename Visitor>
+    static void visit_fields(Self& self, Visitor&& visit) {
+        visit(self.ior, Field{.key = "ior", .label = "Index of refraction", .tip = "1.33 water, 1.5 glass, 2.4 diamond.",
+                              .min = 0, .max = 1000, .min_excluded = true, .soft_min = 1, .soft_max = 2.5f});
+        visit(self.tint, Field{.key = "tint", .label = "Tint", .tip = "Colour of the light that passes or is reflected.",
+                               .role = FieldRole::reflectance, .min = 0, .max = 1});
+        visit(self.roughness, Field{.key = "roughness", .label = "Roughness", .tip = "0 is clear, 1 is frosted.",
+                                    .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
+    }
+    bool operator==(const Dielectric&) const = default;
+};
+
+}  // namespace rayuela

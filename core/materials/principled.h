@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/materials/value.h"
+#include "core/math/field.h"
+
+namespace rayuela {
+
+/// glTF 2.0's metallic-roughness material with the KHR extensions that have come so far; names as in glTF.
+/// Energy lost between microfacets is given back.
+struct Principled {
+    static constexpr std::string_view kType = "principled", kLabel = "Principled", kTip = "The glTF material: most things.";
+
+    ColorValue base_color{Color(1), nullptr};
+    FloatValue metallic{0, nullptr, 2};
+    FloatValue roughness{0.5f, nullptr, 1};
+    float ior = 1.5f;
+    FloatValue transmission{0, nullptr, 0};
+    float clearcoat = 0;
+    float clearcoat_roughness = 0;
+    ColorValue emissive{Color(0), nullptr};
+    float emissive_strength = 1;
+
+    template <typename Self, typename Visitor>
+    static void visit_fields(Self& self, Visitor&& visit) {
+        visit(self.base_color, Field{.key = "base_color", .label = "Base color", .tip = "Colour of the body or of the metal.",
+                                     .role = FieldRole::reflectance, .min = 0, .max = 1});
+        visit(self.metallic, Field{.key = "metallic", .label = "Metallic", .tip = "0 is plastic, wood, stone; 1 is metal.",
+                                   .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
+        visit(self.roughness, Field{.key = "roughness", .label = "Roughness", .tip = "0 is polished, 1 is dull.",
+                                    .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
+        visit(self.ior, Field{.key = "ior", .label = "Index of refraction", .tip = "Strength of the highlight of what is not metal.",
+                              .min = 1, .max = 1000, .soft_min = 1, .soft_max = 2.5f});
+        visit(self.transmission, Field{.key = "transmission", .label = "Transmission", .tip = "Share of the light that passes through.",
+                                       .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
+        visit(self.clearcoat, Field{.key = "clearcoat", .label = "Clearcoat", .tip = "Strength of a clear layer on top.",
+                                    .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
+        visit(self.clearcoat_roughness, Field{.key = "clearcoat_roughness", .label = "Clearcoat roughness",
+                                              .tip = "Roughness of the clear layer.", .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
+        visit(self.emissive, Field{.key = "emissive", .label = "Emissive", .tip = "Colour of the light the surface gives off.",
+                                   .role = FieldRole::radiance, .min = 0, .soft_min = 0, .soft_max = 1});
+        visit(self.emissive_strength, Field{.key = "emissive_strength", .label = "Emissive strength",
+                                            .tip = "Multiplies the emissive colour.", .min = 0, .soft_min = 0, .soft_max = 50});
+    }
+    bool operator==(const Principled&) const = default;
+};
+
+}  // namespace rayuela
