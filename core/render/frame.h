@@ -1,0 +1,57 @@
+#pragma once
+
+#include "core/accel/accelerator.h"
+#include "core/math/image.h"
+#include "core/scene/scene.h"
+
+#include <array>
+#include <memory>
+
+namespace rayuela {
+
+class RenderScene;
+
+/// Why a sample was left out of the film.
+enum class Rejection : std::uint8_t { nan, infinite, negative };
+inline constexpr std::size_t kRejectionCount = 3;
+
+enum class SessionPhase : std::uint8_t {
+    idle,       ///< No scene yet.
+    building,   ///< Trees are being built.
+    rendering,  ///< Samples are being added.
+    paused,     ///< On request.
+    finished,   ///< The sample or time limit of the scene has been reached.
+};
+
+/// What a session has done since accumulation last restarted (counters) or for the current scene (trees).
+struct RenderStatistics {
+    SessionPhase phase = SessionPhase::idle;
+    int spp = 0;                       ///< Samples in every pixel.
+    std::uint64_t samples = 0;         ///< Camera paths.
+    std::uint64_t rays = 0;            ///< Closest-hit rays.
+    std::uint64_t shadow_rays = 0;     ///< Any-hit rays.
+    std::array<std::uint64_t, kRejectionCount> rejected{};
+    double render_seconds = 0;         ///< Wall time in passes, pauses left out.
+    double samples_per_second = 0;
+    double rays_per_second = 0;        ///< Both kinds.
+    double estimated_error = 0;        ///< Estimated relMSE of the image from its two halves; 0 while unknown.
+    double build_seconds = 0;          ///< Wall time of the last update of the render scene.
+    AccelStats accel;
+    std::uint64_t memory_bytes = 0;    ///< Trees, meshes, images and film.
+    std::uint64_t restarts = 0;        ///< How often accumulation has started anew since the session began.
+    int threads = 0;
+};
+
+/// A published image: immutable, complete, and shared with whoever looks at it.
+struct Frame {
+    std::uint64_t version = 0;  ///< Grows with every publication of a session.
+    Image image;                ///< Mean radiance, linear; alpha is 1. Smaller than the film while coarse.
+    bool coarse = false;        ///< A preview of reduced resolution; its pixels never enter the film.
+    /// First object met by the first sample of each pixel, as ObjectId::value (0: none). Size of the image.
+    std::vector<std::uint32_t> object_ids;
+    std::shared_ptr<const Scene> scene;               ///< What it shows.
+    std::shared_ptr<const RenderScene> render_scene;  ///< To pick in.
+    RenderStatistics statistics;
+};
+
+}  // namespace rayuela
