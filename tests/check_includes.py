@@ -9,12 +9,12 @@ import sys
 LAYERS = {
     "math": [],
     "shapes": ["math"],
-    "materials": ["math", "shapes"],
-    "scene": ["math", "shapes", "materials"],
     "accel": ["math", "shapes"],
-    "lights": ["math", "shapes", "materials", "scene"],
-    "io": ["math", "shapes", "materials", "scene"],
-    "render": ["math", "shapes", "materials", "scene", "accel", "lights"],
+    "materials": ["math", "shapes"],
+    "scene": ["math", "shapes", "accel", "materials"],
+    "lights": ["math", "shapes", "accel", "materials", "scene"],
+    "io": ["math", "shapes", "accel", "materials", "scene"],
+    "render": ["math", "shapes", "accel", "materials", "scene", "lights"],
 }
 
 # A library's headers, and the only folders that may include them.
