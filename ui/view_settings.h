@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+namespace rayuela {
+
+enum class ToneMap : std::uint8_t { linear, aces, agx, filmic, false_color };
+inline constexpr const char* kToneMapNames[] = {"Linear", "ACES", "AgX", "Filmic", "False color"};
+
+enum class GizmoMode : std::uint8_t { none, translate, rotate, scale };
+
+/// How the image is looked at. None of it is part of the scene, and none of it ever restarts accumulation.
+struct ViewSettings {
+    float exposure = 0;  ///< Stops: the radiance is multiplied by 2^exposure.
+    ToneMap tone_map = ToneMap::linear;
+    bool fit = true;         ///< Scale the image to the viewport; else `zoom` and `pan` hold.
+    float zoom = 1;          ///< Display pixels an image pixel.
+    float pan_x = 0, pan_y = 0;  ///< Image pixels by which the image's centre is moved from the viewport's.
+    bool show_outline = true;
+    GizmoMode gizmo = GizmoMode::none;
+    bool match_window = true;  ///< The film takes the size of the viewport.
+};
+
+}  // namespace rayuela
