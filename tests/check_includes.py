@@ -21,7 +21,8 @@ LAYERS = {
 LIBRARIES = {
     r"(GL|GLES\d?|EGL|KHR|GLFW|glad)/": ["ui", "tests/ui"],
     r"(imgui|implot|ImGuizmo|imgui_te_|imgui_test_engine/)": ["ui", "tests/ui", "cmake"],
-    r"(nlohmann/|tiny_gltf|tiny_obj|stb|OpenEXR/|Imf|Imath)": ["core/io", "tests"],
+    r"(tiny_gltf|tiny_obj|stb|OpenEXR/|Imf|Imath)": ["core/io", "tests"],
+    r"nlohmann/": ["core/io", "ui", "app", "tests"],
     r"CLI/": ["app", "assets"],
     r"tbb/|oneapi/": ["core/accel", "core/render", "core/io", "tests", "assets"],
     r"hwy/": ["core/accel", "core/render", "tests"],
