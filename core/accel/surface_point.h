@@ -1,0 +1,27 @@
+#pragma once
+
+#include "core/accel/accelerator.h"
+
+#include <span>
+
+namespace rayuela {
+
+/// A hit point in world space, with what its shape says about the surface there.
+struct SurfacePoint {
+    Vec3 p{0};        ///< On the surface, independent of the rounding of Hit::t.
+    Vec3 p_error{0};  ///< Absolute bound per component on the distance of p to the true surface; positive.
+    Vec3 ng{0};       ///< Unit geometric normal of the front, see `surface_point`.
+    Vec3 ns{0};       ///< Unit shading normal: interpolated where a mesh has normals, else ng.
+    Vec2 uv{0};       ///< See `surface_point`.
+};
+
+/// Derives the surface from a valid `hit` of `ray` with `instances`. Nothing here depends on the acceleration structure.
+/// The front is the outside of a sphere or box, the side the normal of a plane points to, the side from which a
+/// triangle runs counter-clockwise and the side of u x v of a quad. Normals follow the inverse transpose, so that a
+/// mirroring transform keeps the front where it was on the object (as glTF demands).
+/// uv: texture coordinates of a mesh that has them, else barycentrics b1, b2; quad: along u and v; sphere: longitude from
+/// +x towards -z over 2 pi and polar angle from +y over pi; box: position across the face in [0, 1]; plane: distances
+/// along two tangents of unit length, in the plane's own space.
+SurfacePoint surface_point(std::span<const GeometryInstance> instances, const Ray& ray, const Hit& hit);
+
+}  // namespace rayuela
