@@ -3,6 +3,7 @@
 #include "core/accel/accel_settings.h"
 #include "core/materials/material.h"
 #include "core/math/id.h"
+#include "core/math/sampler.h"
 #include "core/math/transform.h"
 #include "core/scene/camera.h"
 #include "core/scene/environment.h"
@@ -35,7 +36,6 @@ struct MaterialEntry {
 };
 
 enum class PixelFilter : std::uint8_t { box, tent, gaussian };
-enum class SamplerKind : std::uint8_t { independent, sobol };
 
 inline constexpr int kMaxFilmSide = 16384;
 
