@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""`rayuela render` and `info` do what their flags say. Argument: rayuela."""
+
+import json
+import os
+import pathlib
+import signal
+import struct
+import subprocess
+import sys
+import time
+
+rayuela = sys.argv[1]
+scenes = pathlib.Path(os.environ["RAYUELA_ASSETS"]) / "scenes"
+
+
+def run(*arguments):
+    done = subprocess.run([rayuela, *map(str, arguments)], capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0, f"{arguments}: status {done.returncode}\n{done.stderr}"
+    return done
+
+
+def read_pfm(path):
+    with open(path, "rb") as file:
+        assert file.readline().strip() == b"PF"
+        width, height = map(int, file.readline().split())
+        assert float(file.readline()) < 0, "little endian"
+        data = file.read()
+    assert len(data) == 12 * width * height
+    return width, height, data
+
+
+def png_size(path):
+    data = pathlib.Path(path).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", data[16:24])
+
+
+def test_formats_and_size():
+    for name, size in (("a.png", "40x30"), ("a.exr", "40x30"), ("a.pfm", "17x9")):
+        run("render", scenes / "cornell.scene.json", "-o", name, "--spp", 1, "--size", size)
+        assert pathlib.Path(name).stat().st_size > 100
+    assert png_size("a.png") == (40, 30)
+    assert read_pfm("a.pfm")[:2] == (17, 9)
+
+
+def test_stats():
+    run("render", scenes / "cornell.scene.json", "-o", "s.pfm", "--spp", 3, "--size", "32x32", "--stats", "stats.json")
+    stats = json.loads(pathlib.Path("stats.json").read_text())
+    for key in ("load_seconds", "build_seconds", "render_seconds", "cpu_seconds", "spp", "samples_per_second",
+                "rays_per_second", "nodes", "leaves", "primitives", "references", "peak_memory_bytes", "rejected_samples"):
+        assert key in stats, key
+    assert stats["spp"] == 3
+    assert stats["rejected_samples"] == 0
+    assert stats["references"] >= stats["primitives"] > 0
+    assert stats["peak_memory_bytes"] > 1 << 20
+
+
+def test_same_image_for_any_threads_and_structure():
+    base = ["render", scenes / "final.scene.json", "--spp", 2, "--size", "64x36", "--seed", 7, "-o"]
+    run(*base, "base.pfm")
+    image = read_pfm("base.pfm")[2]
+    for flags in (["--threads", 1], ["--threads", 5], ["--kd-leaf-size", 1], ["--kd-leaf-size", 500],
+                  ["--kd-split", "median"], ["--accelerator", "list"]):
+        run(*base, "other.pfm", *flags)
+        assert read_pfm("other.pfm")[2] == image, flags
+    run(*base[:-3], "--seed", 8, "-o", "other.pfm")
+    assert read_pfm("other.pfm")[2] != image, "another seed is another image"
+
+
+def test_bounces():
+    def mean(bounces):
+        run("render", scenes / "cornell.scene.json", "-o", "b.pfm", "--spp", 4, "--size", "32x32", "--max-bounces", bounces)
+        data = read_pfm("b.pfm")[2]
+        values = struct.unpack(f"<{len(data) // 4}f", data)
+        return sum(values) / len(values)
+
+    none, one, many = mean(0), mean(1), mean(8)
+    assert none < one < many
+
+
+def test_time_limit():
+    start = time.monotonic()
+    run("render", scenes / "cornell.scene.json", "-o", "t.png", "--time", 1, "--stats", "t.json")
+    assert 1 <= time.monotonic() - start < 20
+    assert json.loads(pathlib.Path("t.json").read_text())["spp"] >= 1
+
+
+def test_interrupt_saves():
+    process = subprocess.Popen([rayuela, "render", str(scenes / "cornell.scene.json"), "-o", "i.pfm", "--spp", "1000000",
+                                "--size", "64x64"], stdout=subprocess.PIPE, text=True)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=20)
+    assert process.returncode == 0 and "interrupted" in output
+    assert read_pfm("i.pfm")[:2] == (64, 64)
+
+
+def test_no_progress_bar_in_a_pipe():
+    assert run("render", scenes / "cornell.scene.json", "-o", "q.png", "--spp", 1, "--size", "16x16").stderr == ""
+
+
+def test_info():
+    info = json.loads(run("info", scenes / "fig2.scene.json", "--json").stdout)
+    assert info["objects"]["box"] == 1
+    assert "box" in run("info", scenes / "fig2.scene.json").stdout
+
+
+tests = [value for name, value in list(globals().items()) if name.startswith("test_")]
+failed = 0
+for test in tests:
+    try:
+        test()
+    except AssertionError as error:
+        failed += 1
+        print(f"{test.__name__}: {error}")
+print(f"{len(tests) - failed} passed, {failed} failed")
+sys.exit(failed > 0)
