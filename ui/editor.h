@@ -1,13 +1,18 @@
 #pragma once
 
+#include "core/io/asset_cache.h"
 #include "core/render/render_session.h"
 #include "core/scene/history.h"
 #include "core/scene/scene_edit.h"
+#include "ui/convergence.h"
+#include "ui/file_dialog.h"
 #include "ui/log.h"
+#include "ui/panels/panel_state.h"
 #include "ui/preferences.h"
 #include "ui/view_settings.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,14 +25,21 @@ public:
     /// `threads` 0: one a hardware thread.
     explicit Editor(Preferences preferences, int threads = 0);
     ~Editor();
+    Editor(const Editor&) = delete;
+    Editor& operator=(const Editor&) = delete;
 
     const Scene& scene() const { return *history_.current(); }
+    /// What is being rendered: `scene()`, its film sized by the viewport where view.match_window asks for it.
+    const Scene& shown() const { return *shown_; }
     RenderSession& session() { return session_; }
     /// The frame on screen, taken once by `begin_frame`; null before the first.
     const std::shared_ptr<const Frame>& frame() const { return frame_; }
+    /// How the estimated error has fallen since accumulation last restarted.
+    const ConvergenceHistory& convergence() const { return convergence_; }
 
-    /// Once a user-interface frame: takes the newest frame, finishes loads. `gesture` is the identity of what the mouse
-    /// or keyboard is holding (an ImGui id), 0 when nothing is: edits of one gesture are one step of undo.
+    /// Once a user-interface frame: takes the newest frame, finishes loads, tells the session of `paused` and `threads`.
+    /// `gesture` is the identity of what the mouse or keyboard is holding (an ImGui id), 0 when nothing is: edits of one
+    /// gesture are one step of undo.
     void begin_frame(std::uint64_t gesture);
 
     /// Applies, submits and remembers for undo. A refused edit leaves the scene as it is and says why in the log.
@@ -39,39 +51,80 @@ public:
     std::string undo_label() const { return history_.undo_label(); }
     std::string redo_label() const { return history_.redo_label(); }
 
+    /// The size of the viewport in pixels, which the film takes while view.match_window holds. Part of no history and of
+    /// no file.
+    void resize_film(int width, int height);
+
+    /// An empty scene under a sky.
+    void new_scene();
     /// Loads in the background; on failure the scene stays and the log says why.
     void open(const std::filesystem::path& file);
     /// Adds the objects of a mesh or glTF file to the scene (background, one step of undo).
     void import(const std::filesystem::path& file);
+    /// Reads the file in the background and puts it in place of the object's mesh or glTF file.
+    void load_object_data(ObjectId id, const std::filesystem::path& file);
+    /// Reads an image in the background and multiplies the field `key` of the material with it.
+    void load_texture(MaterialId id, const std::string& key, const std::filesystem::path& file);
+    /// Reads a panorama in the background and surrounds the scene with it.
+    void load_environment(const std::filesystem::path& file);
     /// True while a file is being loaded.
-    bool is_loading() const;
-    bool save();                                          ///< To `file()`; false where there is none or it fails.
-    bool save_as(const std::filesystem::path& file);
-    bool save_image(const std::filesystem::path& file);   ///< PNG as displayed, EXR and PFM linear.
+    bool is_loading() const { return !loads_.empty(); }
+    /// What is being loaded, for a person; empty when nothing is.
+    std::string loading_label() const;
+
+    bool save();                                         ///< To `file()`; false where there is none or it fails.
+    bool save_as(const std::filesystem::path& file);     ///< To a .scene.json.
+    bool save_image(const std::filesystem::path& file);  ///< PNG as displayed, EXR, HDR and PFM linear.
     const std::filesystem::path& file() const { return file_; }
+    /// File name of the scene, or "Untitled".
+    std::string title() const;
     /// Differs from what was last opened or saved.
     bool is_modified() const;
 
+    /// Does it at once, or, where there are unsaved changes, after having asked (see draw_menu_bar).
+    void after_asking_to_save(std::function<void(Editor&)> action);
+    /// For the window's close button: sets `wants_quit` once nothing unsaved would be lost.
+    void request_quit();
+
     std::optional<ObjectId> selection;
-    std::optional<MaterialId> selected_material;
+    std::optional<MaterialId> selected_material;  ///< In the material list, while no object is selected.
     ViewSettings view;
     Preferences preferences;
+    PanelState panels;
+    FileDialog file_dialog;
     Log log;
     bool paused = false;
     int threads = 0;
     bool wants_quit = false;
+    std::function<void(Editor&)> unsaved_action;  ///< What waits for the answer to "save changes?".
 
 private:
     struct Load;
-    void show(std::shared_ptr<const Scene> scene);
+    struct Loaded;
+    void load(std::string label, std::filesystem::path opened, std::function<Result<Loaded>()> read);
+    void finish(Load& load);
+    void push(std::shared_ptr<const Scene> scene, std::string label);
+    void show();
+    void forget_lost_selection();
+    void autosave();
 
     SceneHistory history_;
     std::shared_ptr<const Scene> saved_;
+    std::shared_ptr<const Scene> shown_;
+    std::optional<glm::ivec2> film_size_;
     std::filesystem::path file_;
-    std::uint64_t gesture_ = 0;
+    std::uint64_t held_ = 0;     ///< What begin_frame was told last.
+    std::uint64_t gesture_ = 0;  ///< Its number in the history: the same thing held again is a new gesture.
+    std::uint64_t gestures_ = 0;
     std::shared_ptr<const Frame> frame_;
-    std::unique_ptr<Load> load_;
+    ConvergenceHistory convergence_;
+    std::shared_ptr<AssetCache> cache_;
+    std::vector<std::unique_ptr<Load>> loads_;
+    std::shared_ptr<const Scene> autosaved_;
+    std::chrono::steady_clock::time_point autosave_time_;
     RenderSession session_;
+    bool session_paused_ = false;
+    int session_threads_ = 0;
 };
 
 }  // namespace rayuela

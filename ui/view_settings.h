@@ -13,8 +13,8 @@ enum class GizmoMode : std::uint8_t { none, translate, rotate, scale };
 struct ViewSettings {
     float exposure = 0;  ///< Stops: the radiance is multiplied by 2^exposure.
     ToneMap tone_map = ToneMap::linear;
-    bool fit = true;         ///< Scale the image to the viewport; else `zoom` and `pan` hold.
-    float zoom = 1;          ///< Display pixels an image pixel.
+    bool fit = true;             ///< Scale the image to the viewport; else `zoom` and `pan` hold.
+    float zoom = 1;              ///< Display pixels an image pixel.
     float pan_x = 0, pan_y = 0;  ///< Image pixels by which the image's centre is moved from the viewport's.
     bool show_outline = true;
     GizmoMode gizmo = GizmoMode::none;

@@ -15,7 +15,8 @@ void draw_log_panel(Editor& editor);
 
 enum class DockArea : std::uint8_t { left, right_top, right_bottom, bottom };
 
-/// A dockable panel; the View menu, the default layout and the tests loop over kPanels.
+/// A dockable panel, open unless Editor::panels.closed[its index in kPanels]. `draw` fills the window that the caller has
+/// begun. The View menu, the default layout and the tests loop over kPanels.
 struct Panel {
     const char* name;  ///< ImGui window name.
     const char* tip;
@@ -25,7 +26,8 @@ struct Panel {
 
 inline constexpr std::array kPanels = {
     Panel{"Scene", "All objects: add, hide, rename, duplicate, delete.", DockArea::left, draw_scene_panel},
-    Panel{"Inspector", "The selected object: shape, transform and material.", DockArea::right_top, draw_inspector_panel},
+    Panel{"Inspector", "The selected object: shape, transform and material.", DockArea::right_top,
+          draw_inspector_panel},
     Panel{"Camera", "Where from and how the scene is seen.", DockArea::right_bottom, draw_camera_panel},
     Panel{"Render", "Structure, leaf size, bounces, limits.", DockArea::right_bottom, draw_render_panel},
     Panel{"Statistics", "What the renderer does, in numbers.", DockArea::bottom, draw_statistics_panel},
