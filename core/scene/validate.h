@@ -4,6 +4,7 @@
 #include "core/math/field.h"
 #include "core/math/result.h"
 #include "core/scene/scene.h"
+#include "core/scene/settings_fields.h"
 
 #include <array>
 #include <optional>
@@ -25,6 +26,9 @@ inline std::optional<std::string> check_field(bool, const Field&) {
 inline std::optional<std::string> check_field(const std::string&, const Field&) {
     return std::nullopt;
 }
+
+/// A setting against its range; enumerations must be one of their names.
+std::optional<std::string> check_setting(double value, const SettingField& field);
 
 /// "place.key", or the one that is not empty.
 std::string join_place(std::string_view place, std::string_view key);
@@ -53,13 +57,11 @@ Problems check_transform(const Transform& transform, const Shape& shape, const s
 template <typename IsTaken>
 std::string unique_name(std::string_view name, const IsTaken& is_taken) {
     std::string_view base = name;
-    while (!base.empty() && base.back() >= '0' && base.back() <= '9')
-        base.remove_suffix(1);
+    while (!base.empty() && base.back() >= '0' && base.back() <= '9') base.remove_suffix(1);
     const bool numbered = base.size() < name.size() && base.size() > 1 && base.back() == ' ';
     base = numbered ? base.substr(0, base.size() - 1) : name;
     std::string candidate(name);
-    for (int number = 2; is_taken(candidate); ++number)
-        candidate = std::string(base) + " " + std::to_string(number);
+    for (int number = 2; is_taken(candidate); ++number) candidate = std::string(base) + " " + std::to_string(number);
     return candidate;
 }
 

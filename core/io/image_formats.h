@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/io/image_io.h"
+
+#include <string>
+
+namespace rayuela::image_formats {
+
+/// The formats behind image_io.h, each in its own file. Bytes begin with the format's signature; causes come without the
+/// file's name.
+using Decoded = tl::expected<Image, std::string>;
+
+Decoded decode_stb(std::string_view bytes, ColorDecoding decoding);  ///< PNG, JPEG, Radiance HDR.
+Decoded decode_exr(const std::string& bytes);
+Decoded decode_pfm(std::string_view bytes);
+
+tl::expected<std::string, std::string> encode_png(const Image& image);
+tl::expected<std::string, std::string> encode_hdr(const Image& image);
+tl::expected<std::string, std::string> encode_exr(const Image& image);
+tl::expected<std::string, std::string> encode_pfm(const Image& image);
+
+/// An image of that size, or why it is refused.
+Decoded make_image(long long width, long long height);
+
+}  // namespace rayuela::image_formats
