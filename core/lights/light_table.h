@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/accel/accelerator.h"
+#include "core/lights/area_light.h"
+#include "core/lights/environment_distribution.h"
+#include "core/lights/light_sample.h"
+#include "core/materials/material.h"
+#include "core/math/distribution.h"
+#include "core/scene/environment.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace rayuela {
+
+/// All lights that can be sampled: emissive spheres (outside or inside), triangles, quads, box faces, mesh triangles, and
+/// an environment image. Left out, and so found by scattered rays alone, with pdf 0: infinite planes, spheres that their
+/// transform turns into ellipsoids, and constant and gradient environments, which are so smooth that scattering finds
+/// them as well as sampling would, without shadow rays. Immutable; keeps no reference to what it was built from.
+class LightTable {
+public:
+    LightTable() = default;
+    /// materials[i] belongs to instances[i] and is never null.
+    LightTable(std::span<const GeometryInstance> instances, std::span<const Material* const> materials,
+               const Environment& environment);
+
+    /// Whether there is nothing to sample: then `sample` must not be called, and the table owns no memory.
+    bool empty() const { return lights_.empty() && !environment_; }
+
+    /// A direction from `p` towards a light. `u_select` in [0, 1) chooses the light, `u` in [0, 1)^2 the point on it.
+    /// Nothing where the point does not shine towards p.
+    std::optional<LightSample> sample(const Vec3& p, float u_select, const Vec2& u) const;
+
+    /// Density per solid angle at `p` with which `sample` draws the unit direction `wi`, which hits the surface `hit` at
+    /// `hit_point` (unit geometric normal `ng` of the front). 0 where it would not.
+    float pdf(const Vec3& p, const Vec3& wi, const Hit& hit, const Vec3& hit_point, const Vec3& ng) const;
+    /// The same for a direction that hits nothing.
+    float environment_pdf(const Vec3& wi) const;
+
+    /// Lights that can be drawn, an environment image among them.
+    std::size_t size() const { return lights_.size() + (environment_ ? 1 : 0); }
+    std::uint64_t memory_bytes() const;
+
+private:
+    /// A light for shading at p. By power alone for now, so that p does not matter.
+    AliasTable::Draw select(const Vec3& p, float u) const;
+    float selection_probability(const Vec3& p, std::uint32_t light) const;
+
+    std::vector<AreaLight> lights_;           ///< Those of an object lie together, in the order of its primitives.
+    std::vector<std::uint32_t> first_light_;  ///< Of an object, or kNone.
+    AliasTable by_power_;                     ///< Over lights_, without the environment.
+    std::shared_ptr<const EnvironmentDistribution> environment_;
+    float environment_probability_ = 0;
+};
+
+}  // namespace rayuela

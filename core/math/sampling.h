@@ -1,0 +1,74 @@
+#pragma once
+
+#include "core/math/vec.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Directions and points from numbers u in [0, 1)^2, area-preserving, so that stratified numbers stay stratified.
+// Directions are unit, in a local frame around +z. Densities are per solid angle.
+
+namespace rayuela {
+
+/// Uniform on the unit disk. Shirley & Chiu, "A low distortion map between disk and square", 1997.
+inline Vec2 sample_concentric_disk(const Vec2& u) {
+    const float x = 2 * u.x - 1, y = 2 * u.y - 1;
+    if (x == 0 && y == 0) return Vec2(0);
+    const bool horizontal = std::abs(x) > std::abs(y);
+    const float r = horizontal ? x : y;
+    const float phi = horizontal ? (kPi / 4) * (y / x) : kPi / 2 - (kPi / 4) * (x / y);
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Density cos / pi. Malley's method; z > 0 but where u lies on the very edge of the square.
+inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
+    const Vec2 d = sample_concentric_disk(u);
+    return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y))};
+}
+
+/// The direction at azimuth `phi` whose polar angle has this cosine and sine.
+inline Vec3 spherical_direction(float cos_theta, float sin_theta, float phi) {
+    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
+}
+
+/// Within the cone about +z of 1 - cos(half angle) = `one_minus_cos`, in (0, 2]: 2 is the sphere, 1 the hemisphere. Written
+/// so that tiny cones keep their precision.
+inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
+    const float x = u.x * one_minus_cos;
+    return spherical_direction(1 - x, std::sqrt(std::max(0.0f, x * (2 - x))), 2 * kPi * u.y);
+}
+
+inline float uniform_cone_pdf(float one_minus_cos) {
+    return 1 / (2 * kPi * one_minus_cos);
+}
+
+inline Vec3 sample_uniform_hemisphere(const Vec2& u) {
+    return sample_uniform_cone(u, 1);
+}
+
+inline Vec3 sample_uniform_sphere(const Vec2& u) {
+    return sample_uniform_cone(u, 2);
+}
+
+inline constexpr float kUniformHemispherePdf = 1 / (2 * kPi);
+inline constexpr float kUniformSpherePdf = 1 / (4 * kPi);
+
+/// Barycentrics (b1, b2) of a point uniform over a triangle. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
+inline Vec2 sample_uniform_triangle(const Vec2& u) {
+    return u.x < u.y ? Vec2(u.x / 2, u.y - u.x / 2) : Vec2(u.x - u.y / 2, u.y / 2);
+}
+
+/// Weight of a strategy of density `a` (one sample each) against another of density `b`. Veach & Guibas 1995.
+inline float balance_heuristic(float a, float b) {
+    if (a == 0) return 0;
+    return 1 / (1 + b / a);
+}
+
+/// The same with the squares of the densities; written so that neither overflows.
+inline float power_heuristic(float a, float b) {
+    if (a == 0) return 0;
+    const float ratio = b / a;
+    return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace rayuela
