@@ -1,0 +1,81 @@
+#pragma once
+
+#include "core/math/precise.h"
+#include "core/shapes/shape_hit.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace rayuela {
+
+/// a * d - b * c with the right sign always and a relative error below 2^-40: where the plain difference cancels, by Kahan's
+/// algorithm (Jeannerod, Louvet & Muller, "Further analysis of Kahan's algorithm", Math. Comp. 82, 2013: 1.5 ulp).
+inline double difference_of_products(double a, double d, double b, double c) {
+    const double ad = a * d, bc = b * c;
+    const double difference = ad - bc;
+    if (std::fabs(difference) > 0x1p-12 * (std::fabs(ad) + std::fabs(bc))) return difference;
+    return std::fma(a, d, -bc) + std::fma(-b, c, bc);
+}
+
+/// A ray prepared for triangles: the shear that takes it to the z axis, with z the ray's dominant axis.
+struct TriangleRay {
+    Vec3d origin{0};
+    double shear_x = 0, shear_y = 0;
+    double inverse_z = 1;
+    int kx = 0, ky = 1, kz = 2;
+
+    TriangleRay() = default;
+    explicit TriangleRay(const RayD& ray) : origin(ray.origin) {
+        const Vec3d size = glm::abs(ray.direction);
+        kz = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+        kx = kz == 2 ? 0 : kz + 1;
+        ky = kx == 2 ? 0 : kx + 1;
+        inverse_z = 1 / ray.direction[kz];
+        shear_x = ray.direction[kx] * inverse_z;
+        shear_y = ray.direction[ky] * inverse_z;
+    }
+    /// Depends on the ray and the vertex alone, so that triangles which share a vertex agree on it.
+    Vec3d sheared(const Vec3& vertex) const {
+        const Vec3d v = Vec3d(vertex) - origin;
+        return {v[kx] - shear_x * v[kz], v[ky] - shear_y * v[kz], v[kz]};
+    }
+};
+
+/// The hit, if it is in `range`; u, v are the barycentrics of b and c. Both sides count. Watertight: the test is Woop, Benthin &
+/// Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, with sheared vertices in double and edge functions of
+/// exact sign instead of float with a fallback. t is the one of the point u, v of the triangle, which lies off the ray by less
+/// than 2^-38 of the triangle's extent: traversal may rely on it.
+inline bool intersect_triangle(const TriangleRay& ray, const Vec3& va, const Vec3& vb, const Vec3& vc,
+                               const TRange& range, ShapeHit& hit) {
+    const Vec3d a = ray.sheared(va), b = ray.sheared(vb), c = ray.sheared(vc);
+    const double u = difference_of_products(c.x, b.y, c.y, b.x);
+    const double v = difference_of_products(a.x, c.y, a.y, c.x);
+    const double w = difference_of_products(b.x, a.y, b.y, a.x);
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
+    const double determinant = u + v + w;
+    if (determinant == 0) return false;
+
+    const double inverse = 1 / determinant;
+    const float t = static_cast<float>((u * a.z + v * b.z + w * c.z) * inverse * ray.inverse_z);
+    if (!range.contains(t)) return false;
+    hit = {.t = t, .u = static_cast<float>(v * inverse), .v = static_cast<float>(w * inverse)};
+    return true;
+}
+
+/// Corners in turn, sharing their vertices with neighbours. u, v run along the edges from the first corner to the second
+/// and to the fourth. Two triangles over one diagonal: as watertight as they are.
+inline bool intersect_quad(const TriangleRay& ray, const std::array<Vec3, 4>& corners, const TRange& range,
+                           ShapeHit& hit) {
+    if (intersect_triangle(ray, corners[0], corners[1], corners[2], range, hit)) {
+        hit.u = std::fmin(hit.u + hit.v, 1.0f);
+        return true;
+    }
+    if (intersect_triangle(ray, corners[0], corners[2], corners[3], range, hit)) {
+        hit.v = std::fmin(hit.u + hit.v, 1.0f);
+        return true;
+    }
+    return false;
+}
+
+}  // namespace rayuela

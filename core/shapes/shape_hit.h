@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/math/ray.h"
+
+namespace rayuela {
+
+/// What the intersection of a ray with one shape gives. t is rounded to float once, before it is compared with anything:
+/// so a ray whose t_max is the t of a hit still has that hit.
+struct ShapeHit {
+    float t = kInfinity;
+    float u = 0, v = 0;
+    std::uint32_t primitive = 0;
+};
+
+/// The closed interval of t in which a hit counts. Comparisons are false on NaN.
+struct TRange {
+    float min = 0;
+    float max = kInfinity;
+
+    bool contains(float t) const { return t >= min && t <= max && t < kInfinity; }
+};
+
+}  // namespace rayuela
