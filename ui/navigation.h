@@ -5,8 +5,9 @@
 
 namespace rayuela {
 
-/// Ways to move a camera, each from one camera to the next. All keep `up`, none reaches a pole or the target.
-/// Where the camera looks along `up`, or at its own position, another direction takes the place of the missing one.
+/// Ways to move a camera, each from one camera to the next (jumps to a view are in camera_views.h). All keep `up`; none
+/// reaches a pole or the target. Where the camera looks along `up`, or at its own position, another direction takes the
+/// place of the missing one.
 
 /// Orthonormal directions of the image: forward x up = right.
 struct CameraFrame {
@@ -25,13 +26,6 @@ Camera pan(const Camera& camera, const Vec2& delta);
 Camera dolly(const Camera& camera, float factor);
 /// Moves eye and target by right, up, forward.
 Camera fly(const Camera& camera, const Vec3& motion);
-/// Keeps the direction and moves so that the sphere around the bounds fills the image; `aspect` is width over height.
-Camera frame_bounds(const Camera& camera, const Bounds3& bounds, float aspect);
-/// Looks along `direction` at the same target from the same distance.
-Camera look_along(const Camera& camera, const Vec3& direction);
-/// Makes `point` sharp and turns about its depth; the picture keeps its place.
-Camera focus_on(const Camera& camera, const Vec3& point);
-
 /// A step of flight that suits the scene, world units a second: its extent in a few seconds.
 float fly_speed(const Camera& camera, const Bounds3& scene);
 

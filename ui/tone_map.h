@@ -1,18 +1,18 @@
 #pragma once
 
-#include "core/math/vec.h"
+#include "core/math/image.h"
 #include "ui/view_settings.h"
 
 namespace rayuela {
 
-/// What shaders/display.frag does to a pixel: exposure and tone curve from linear radiance to linear display light in
-/// [0, 1]. The sRGB curve is not yet applied.
-Color tone_map(const Color& radiance, const ViewSettings& view);
+/// The colour that a display shows for a radiance, display-linear sRGB in [0, 1]: exposure, then the tone map, then
+/// clipping. What is not finite shows as black. shaders/display.frag computes the same.
+Color tone_mapped(const Color& radiance, float exposure, ToneMap tone_map);
+/// The whole image, alpha 1.
+Image tone_mapped(const Image& image, float exposure, ToneMap tone_map);
 
-/// Stops from black to white of the false-colour scale, around luminance 1 after exposure.
-inline constexpr float kFalseColorStops = 6;
-
-/// Colour of t in [0, 1] on the false-colour scale (Turbo, Mikhailov 2019), sRGB encoded.
-Color false_color(float t);
+/// Khronos' data format specification 13.3.
+float srgb_from_linear(float linear);
+float linear_from_srgb(float srgb);
 
 }  // namespace rayuela

@@ -19,7 +19,6 @@ struct ViewSettings {
     bool show_outline = true;
     GizmoMode gizmo = GizmoMode::none;
     bool match_window = true;         ///< The film takes the size of the viewport.
-    std::uint32_t hidden_panels = 0;  ///< Bit i: kPanels[i] is closed.
     bool reset_layout = false;        ///< Set to have the panels back in their first places; the next frame clears it.
 };
 
