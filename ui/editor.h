@@ -103,10 +103,10 @@ private:
     struct Loaded;
     void load(std::string label, std::filesystem::path opened, std::function<Result<Loaded>()> read);
     void finish(Load& load);
-    void push(std::shared_ptr<const Scene> scene, std::string label);
+    void push(std::shared_ptr<const Scene> scene, std::string label, std::uint64_t gesture);
     void show();
     void forget_lost_selection();
-    void autosave();
+    void autosave();  ///< To the configuration folder, once a minute where something is unsaved.
 
     SceneHistory history_;
     std::shared_ptr<const Scene> saved_;

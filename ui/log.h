@@ -3,6 +3,7 @@
 #include "core/math/result.h"
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,12 @@ struct LogEntry {
     std::chrono::system_clock::time_point time;
     LogLevel level = LogLevel::info;
     std::string text;
+    int count = 1;  ///< How often in a row it has happened.
 };
 
-/// What has happened, newest last. Used by the UI thread only.
+inline constexpr std::size_t kMaxLogEntries = 5000;
+
+/// What has happened, newest last; the oldest beyond kMaxLogEntries are forgotten. Used by the UI thread only.
 class Log {
 public:
     void add(LogLevel level, std::string text);
