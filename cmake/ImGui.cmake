@@ -40,6 +40,7 @@ function(rayuela_download_imgui)
     endif()
     file(GLOB file ${downloads}/partial/imgui_bundle-*.tar.gz)
     file(RENAME ${file} ${archive})
+    file(REMOVE_RECURSE ${downloads}/partial)
 endfunction()
 
 file(MAKE_DIRECTORY ${downloads})
