@@ -29,6 +29,8 @@ public:
     Editor& operator=(const Editor&) = delete;
 
     const Scene& scene() const { return *history_.current(); }
+    /// The same, to be held while edits replace it.
+    std::shared_ptr<const Scene> snapshot() const { return history_.current(); }
     /// What is being rendered: `scene()`, its film sized by the viewport where view.match_window asks for it.
     const Scene& shown() const { return *shown_; }
     RenderSession& session() { return session_; }

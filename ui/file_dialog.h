@@ -39,7 +39,6 @@ private:
     void draw_places(const std::vector<std::filesystem::path>& places);
     void draw_items();
     void draw_footer();
-    bool draw_overwrite_question();
     void accept();
     void close();
     std::filesystem::path typed_path() const;

@@ -4,6 +4,7 @@
 #include "core/math/vec.h"
 
 #include <array>
+#include <set>
 #include <string>
 
 namespace rayuela {
@@ -17,6 +18,7 @@ struct PanelState {
     bool show_about = false;
 
     std::string scene_filter;
+    std::set<ObjectId> collapsed;  ///< Lists that are folded.
     ObjectId renaming;
     bool rename_started = false;  ///< The text field of `renaming` has had the keyboard.
     std::string new_name;
@@ -31,6 +33,12 @@ struct PanelState {
     std::array<bool, 3> log_levels{true, true, true};
     std::size_t log_seen = 0;  ///< Entries when the log was last drawn.
     bool plot_over_time = false;
+
+    void begin_rename(ObjectId id, const std::string& name) {
+        renaming = id;
+        rename_started = false;
+        new_name = name;
+    }
 };
 
 }  // namespace rayuela
