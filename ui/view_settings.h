@@ -18,8 +18,8 @@ struct ViewSettings {
     float pan_x = 0, pan_y = 0;  ///< Image pixels by which the image's centre is moved from the viewport's.
     bool show_outline = true;
     GizmoMode gizmo = GizmoMode::none;
-    bool match_window = true;         ///< The film takes the size of the viewport.
-    bool reset_layout = false;        ///< Set to have the panels back in their first places; the next frame clears it.
+    bool match_window = true;   ///< The film takes the size of the viewport.
+    bool reset_layout = false;  ///< Set to have the panels back in their first places; the next frame clears it.
 };
 
 }  // namespace rayuela

@@ -1,0 +1,202 @@
+#include "ui/display.h"
+
+#include "ui/embedded.h"
+#include "ui/theme.h"
+
+#include <fmt/format.h>
+#include <glad/glad.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace rayuela {
+
+namespace {
+
+/// From this zoom on pixels are shown as squares rather than blended.
+constexpr float kSquarePixelZoom = 1.999f;
+constexpr Vec3 kBackground{0.066f, 0.070f, 0.075f};
+constexpr float kCheckerSize = 12;
+
+unsigned compile(GLenum kind, std::string_view name) {
+    const std::string_view text = embedded_shader(name);
+    const unsigned shader = glCreateShader(kind);
+    const char* const data = text.data();
+    const int length = static_cast<int>(text.size());
+    glShaderSource(shader, 1, &data, &length);
+    glCompileShader(shader);
+    int compiled = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) {
+        char message[1024] = {};
+        glGetShaderInfoLog(shader, sizeof message, nullptr, message);
+        throw std::runtime_error(fmt::format("shaders/{}: {}", name, message));
+    }
+    return shader;
+}
+
+unsigned link_program() {
+    const unsigned vertex = compile(GL_VERTEX_SHADER, "display.vert");
+    const unsigned fragment = compile(GL_FRAGMENT_SHADER, "display.frag");
+    const unsigned program = glCreateProgram();
+    glAttachShader(program, vertex);
+    glAttachShader(program, fragment);
+    glLinkProgram(program);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    return program;
+}
+
+unsigned make_texture() {
+    unsigned texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
+}  // namespace
+
+Display::Display() : program_(link_program()), film_(make_texture()), mask_(make_texture()), target_(make_texture()) {
+    glGenVertexArrays(1, &vertex_array_);
+    glGenFramebuffers(1, &framebuffer_);
+}
+
+Display::~Display() {
+    const unsigned textures[] = {film_, mask_, target_};
+    glDeleteTextures(3, textures);
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteVertexArrays(1, &vertex_array_);
+    glDeleteProgram(program_);
+}
+
+unsigned Display::draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request) {
+    if (request.size.x < 1 || request.size.y < 1) return 0;
+    const Frame nothing;
+    const Frame& shown = frame ? *frame : nothing;
+    if (shown.version == drawn_version_ && request == drawn_) return target_;
+
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (shown.version != film_version_ && !shown.image.pixels.empty()) {
+        upload_film(shown.image);
+        film_version_ = shown.version;
+    }
+    const bool outlines = request.outline_width > 0 && !request.outlined.empty() && !shown.object_ids.empty();
+    if (outlines && (shown.version != mask_version_ || request.outlined != masked_)) {
+        upload_mask(shown, request.outlined);
+        mask_version_ = shown.version;
+        masked_ = request.outlined;
+    }
+    resize_target(request.size);
+    draw_film(shown, request);
+    drawn_version_ = shown.version;
+    drawn_ = request;
+    return target_;
+}
+
+void Display::upload_film(const Image& image) {
+    const auto start = std::chrono::steady_clock::now();
+    const glm::ivec2 size(image.width, image.height);
+    glBindTexture(GL_TEXTURE_2D, film_);
+    if (size == film_size_) {
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, image.pixels.data());
+    } else {
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, image.pixels.data());
+        film_size_ = size;
+    }
+    ++statistics_.uploads;
+    statistics_.upload_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Display::upload_mask(const Frame& frame, const std::vector<ObjectId>& outlined) {
+    const auto last = std::ranges::max(frame.object_ids);
+    std::vector<std::uint8_t> is_outlined(static_cast<std::size_t>(last) + 1, 0);
+    for (const ObjectId id : outlined) {
+        if (id.value <= last) is_outlined[id.value] = 255;
+    }
+    const glm::ivec2 size(frame.image.width, frame.image.height);
+    std::vector<std::uint8_t> mask(frame.object_ids.size());
+    glm::ivec2 low = size, high(0);
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x);
+            mask[i] = is_outlined[frame.object_ids[i]];
+            if (!mask[i]) continue;
+            low = glm::min(low, glm::ivec2(x, y));
+            high = glm::max(high, glm::ivec2(x + 1, y + 1));
+        }
+    }
+    mask_bounds_ = glm::ivec4(low, high);
+    glBindTexture(GL_TEXTURE_2D, mask_);
+    if (size == mask_size_) {
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RED, GL_UNSIGNED_BYTE, mask.data());
+    } else {
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE, mask.data());
+        mask_size_ = size;
+    }
+}
+
+void Display::resize_target(glm::ivec2 size) {
+    if (size == target_size_) return;
+    glBindTexture(GL_TEXTURE_2D, target_);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    target_size_ = size;
+}
+
+void Display::draw_film(const Frame& frame, const DisplayRequest& request) {
+    int outer = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &outer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
+    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target_, 0);
+    glViewport(0, 0, request.size.x, request.size.y);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+
+    const auto at = [this](const char* name) { return glGetUniformLocation(program_, name); };
+    const bool has_film = frame.scene && !frame.image.pixels.empty();
+    const Vec2 image_size = has_film ? Vec2(frame.scene->film.width, frame.scene->film.height) : Vec2(0);
+    const bool outlines = request.outline_width > 0 && !request.outlined.empty() && mask_size_ == film_size_;
+    glUseProgram(program_);
+    glUniform1i(at("film"), 0);
+    glUniform1i(at("selected"), 1);
+    glUniform2f(at("target_size"), static_cast<float>(request.size.x), static_cast<float>(request.size.y));
+    glUniform2f(at("origin"), request.origin.x, request.origin.y);
+    glUniform2f(at("image_size"), image_size.x, image_size.y);
+    glUniform1f(at("zoom"), request.zoom);
+    glUniform1f(at("exposure"), request.exposure);
+    glUniform1i(at("tone_map"), static_cast<int>(request.tone_map));
+    glUniform1i(at("smooth_film"), frame.coarse || request.zoom < kSquarePixelZoom);
+    glUniform4f(at("selected_bounds"), static_cast<float>(mask_bounds_.x), static_cast<float>(mask_bounds_.y),
+                static_cast<float>(mask_bounds_.z), static_cast<float>(mask_bounds_.w));
+    glUniform1f(at("outline_width"), outlines ? request.outline_width : 0);
+    glUniform3f(at("outline_color"), theme::kAccent.x, theme::kAccent.y, theme::kAccent.z);
+    glUniform3f(at("background"), kBackground.x, kBackground.y, kBackground.z);
+    glUniform1f(at("checker_size"), kCheckerSize);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, mask_);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, film_);
+    glBindVertexArray(vertex_array_);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<unsigned>(outer));
+    ++statistics_.draws;
+}
+
+std::vector<ObjectId> with_children(const Scene& scene, ObjectId id) {
+    std::vector<ObjectId> found{id};
+    // Parents stand before their children.
+    for (const Object& object : scene.objects) {
+        if (std::ranges::find(found, object.parent) != found.end()) found.push_back(object.id);
+    }
+    return found;
+}
+
+}  // namespace rayuela

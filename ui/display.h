@@ -1,0 +1,63 @@
+#pragma once
+
+#include "core/render/frame.h"
+#include "ui/view_settings.h"
+
+#include <memory>
+#include <vector>
+
+namespace rayuela {
+
+/// What one drawing of the image depends on besides the frame. Pixels of the target, from its upper left corner.
+struct DisplayRequest {
+    glm::ivec2 size{0};  ///< Of the target.
+    Vec2 origin{0};      ///< The image's upper left corner.
+    float zoom = 1;      ///< Target pixels an image pixel.
+    float exposure = 0;
+    ToneMap tone_map = ToneMap::linear;
+    float outline_width = 0;
+    std::vector<ObjectId> outlined;
+
+    bool operator==(const DisplayRequest&) const = default;
+};
+
+/// Draws frames into a texture with shaders/display.frag. What has not changed is neither uploaded nor drawn again.
+/// Lives and dies with its OpenGL context current.
+class Display {
+public:
+    Display();
+    ~Display();
+    Display(const Display&) = delete;
+    Display& operator=(const Display&) = delete;
+
+    /// The texture that shows the frame; its rows run upwards, as OpenGL's do. 0 where the size is 0.
+    unsigned draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request);
+
+    struct Statistics {
+        std::uint64_t uploads = 0;
+        std::uint64_t draws = 0;
+        double upload_seconds = 0;  ///< Of the last upload.
+    };
+    const Statistics& statistics() const { return statistics_; }
+
+private:
+    void upload_film(const Image& image);
+    void upload_mask(const Frame& frame, const std::vector<ObjectId>& outlined);
+    void resize_target(glm::ivec2 size);
+    void draw_film(const Frame& frame, const DisplayRequest& request);
+
+    unsigned program_ = 0, vertex_array_ = 0;
+    unsigned film_ = 0, mask_ = 0;
+    unsigned target_ = 0, framebuffer_ = 0;
+    glm::ivec2 film_size_{0}, mask_size_{0}, target_size_{0};
+    glm::ivec4 mask_bounds_{0};
+    std::uint64_t film_version_ = 0, mask_version_ = 0, drawn_version_ = 0;
+    std::vector<ObjectId> masked_;
+    DisplayRequest drawn_;
+    Statistics statistics_;
+};
+
+/// The object and, of a list, everything in it.
+std::vector<ObjectId> with_children(const Scene& scene, ObjectId id);
+
+}  // namespace rayuela
