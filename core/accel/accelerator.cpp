@@ -1,5 +1,6 @@
 #include "core/accel/accelerator.h"
 
+#include "core/accel/kd_accelerator.h"
 #include "core/accel/list.h"
 
 #include <algorithm>
@@ -20,9 +21,14 @@ AccelStats& AccelStats::operator+=(const AccelStats& other) {
 std::shared_ptr<const Accelerator> Accelerator::build(std::vector<GeometryInstance> instances,
                                                       const AccelSettings& settings, const Accelerator* previous,
                                                       BuildControl& control) {
-    (void)previous;
     if (control.cancelled) return nullptr;
-    return std::make_shared<ListAccelerator>(std::move(instances), settings);
+    if (settings.kind == AcceleratorKind::list) {
+        auto list = std::make_shared<ListAccelerator>(std::move(instances), settings);
+        control.total += list->stats().primitives;
+        control.done += list->stats().primitives;
+        return list;
+    }
+    return KdAccelerator::build(std::move(instances), settings, dynamic_cast<const KdAccelerator*>(previous), control);
 }
 
 }  // namespace rayuela

@@ -56,8 +56,9 @@ public:
 
     /// Builds in parallel on the calling thread's task arena. Trees of meshes that `previous` already has with the same
     /// settings are shared. Null when cancelled.
-    static std::shared_ptr<const Accelerator> build(std::vector<GeometryInstance> instances, const AccelSettings& settings,
-                                                    const Accelerator* previous, BuildControl& control);
+    static std::shared_ptr<const Accelerator> build(std::vector<GeometryInstance> instances,
+                                                    const AccelSettings& settings, const Accelerator* previous,
+                                                    BuildControl& control);
 
     /// hits[i] becomes the closest hit of rays[i] with t_min <= t <= t_max, ties by is_closer, or an invalid Hit.
     /// rays.size() == hits.size(). One call for a whole batch: the dispatch is a batch's, not a ray's.

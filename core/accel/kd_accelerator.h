@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/accel/kd_kernels.h"
+
+namespace rayuela {
+
+/// Two levels of kd-trees: one over each distinct mesh in its own space, one over the objects. Planes are tested in turn.
+class KdAccelerator final : public Accelerator {
+public:
+    /// Null when cancelled.
+    static std::shared_ptr<const KdAccelerator> build(std::vector<GeometryInstance> instances,
+                                                      const AccelSettings& settings, const KdAccelerator* previous,
+                                                      BuildControl& control);
+
+    void intersect(std::span<const Ray> rays, std::span<Hit> hits) const override { kd_intersect(scene(), rays, hits); }
+    void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const override {
+        kd_occluded(scene(), rays, blocked);
+    }
+    AccelStats stats() const override { return stats_; }
+    const AccelSettings& settings() const override { return settings_; }
+    std::span<const GeometryInstance> instances() const override { return instances_; }
+    Bounds3 bounds() const override { return tree_.bounds; }
+
+    /// The tree of the mesh of an object; null for other shapes. For tests and statistics.
+    const MeshTree* mesh_tree(std::uint32_t object) const { return mesh_of_object_[object]; }
+
+private:
+    KdAccelerator() = default;
+    bool build_meshes(const KdAccelerator* previous, BuildControl& control);
+    bool build_objects(BuildControl& control);
+    KdScene scene() const { return {objects_, mesh_of_object_, planes_, &tree_}; }
+
+    std::vector<GeometryInstance> instances_;
+    AccelSettings settings_;
+    std::vector<TracedObject> objects_;
+    std::vector<std::uint32_t> planes_;
+    std::vector<std::shared_ptr<const MeshTree>> mesh_trees_;
+    std::vector<const MeshTree*> mesh_of_object_;
+    KdTree tree_;
+    AccelStats stats_;
+};
+
+}  // namespace rayuela

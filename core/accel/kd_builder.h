@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/accel/kd_tree.h"
+
+#include <optional>
+#include <span>
+
+namespace rayuela {
+
+struct KdBuildInput {
+    std::span<const Bounds3> bounds;  ///< Of each primitive; those that are empty or not finite are left out.
+    /// When set, the primitives are its triangles, and cut ones are bounded by what is left of them.
+    const TriangleMesh* mesh = nullptr;
+    KdSplit split = KdSplit::sah;
+    int leaf_size = 16;
+    /// Cost of a step of traversal over that of a test of one primitive (sah).
+    float step_cost = 1;
+    /// Whether sah may cut a node of up to leaf_size primitives where that pays.
+    bool split_below_leaf_size = false;
+};
+
+/// The tree does not depend on the number of threads. References stay below 9 times the primitives (or a million), so that a
+/// leaf can hold more than leaf_size where the primitives overlap too much to be told apart. Nothing when cancelled.
+std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& control);
+
+}  // namespace rayuela

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/accel/mesh_tree.h"
+#include "core/accel/traced_object.h"
+
+#include <span>
+
+namespace rayuela {
+
+/// What the kernels read of a KdAccelerator.
+struct KdScene {
+    std::span<const TracedObject> objects;
+    std::span<const MeshTree* const> mesh_trees;  ///< One an object; null for all but meshes.
+    std::span<const std::uint32_t> planes;        ///< Objects that no tree can hold.
+    const KdTree* tree = nullptr;                 ///< Over all other objects.
+};
+
+/// Accelerator::intersect and Accelerator::occluded by the widest instructions of this machine.
+void kd_intersect(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits);
+void kd_occluded(const KdScene& scene, std::span<const Ray> rays, std::span<std::uint8_t> blocked);
+
+}  // namespace rayuela

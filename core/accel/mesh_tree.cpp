@@ -1,0 +1,82 @@
+#include "core/accel/mesh_tree.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace rayuela {
+namespace {
+
+/// Cost of a step of traversal over that of one of the triangles that a leaf tests at once.
+constexpr float kStepCost = 1.0f;
+
+std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh) {
+    std::vector<Bounds3> bounds(mesh.triangles.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bounds.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const glm::uvec3& t = mesh.triangles[i];
+            const Vec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
+            // min and max drop a NaN; the build drops what is not finite.
+            if (is_finite(a) && is_finite(b) && is_finite(c)) bounds[i] = {min(a, min(b, c)), max(a, max(b, c))};
+        }
+    });
+    return bounds;
+}
+
+void write_leaf(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, float* runs) {
+    const std::size_t n = triangles.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const glm::uvec3& t = mesh.triangles[triangles[i]];
+        Bounds3 bounds;
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vec3& vertex = mesh.positions[t[corner]];
+            for (int axis = 0; axis < 3; ++axis)
+                runs[static_cast<std::size_t>(3 * corner + axis) * n + i] = vertex[axis];
+            bounds.extend(vertex);
+        }
+        runs[9 * n + i] = max_component(bounds.extent());
+    }
+}
+
+std::unique_ptr<float[]> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree) {
+    const std::size_t size = MeshTree::kRuns * tree.references.size();
+    auto data = std::make_unique_for_overwrite<float[]>(size + MeshTree::kPadding);
+    std::fill_n(data.get() + size, MeshTree::kPadding, 0.0f);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const KdNode& node = tree.nodes[i];
+            if (!node.is_leaf() || node.count() == 0) continue;
+            write_leaf(mesh, std::span(tree.references).subspan(node.first(), node.count()),
+                       data.get() + MeshTree::kRuns * node.first());
+        }
+    });
+    return data;
+}
+
+}  // namespace
+
+std::shared_ptr<const MeshTree> build_mesh_tree(std::shared_ptr<const TriangleMesh> mesh, const AccelSettings& settings,
+                                                BuildControl& control) {
+    const std::vector<Bounds3> bounds = triangle_bounds(*mesh);
+    if (control.cancelled) return nullptr;
+    auto tree = build_kd_tree({.bounds = bounds,
+                               .mesh = mesh.get(),
+                               .split = settings.split,
+                               .leaf_size = settings.leaf_size,
+                               .step_cost = kStepCost},
+                              control);
+    if (!tree) return nullptr;
+
+    auto result = std::make_shared<MeshTree>();
+    result->tree = std::move(*tree);
+    result->leaf_data = make_leaf_data(*mesh, result->tree);
+    result->stats = result->tree.stats();
+    result->stats.primitives = mesh->triangles.size();
+    result->stats.memory_bytes +=
+        (MeshTree::kRuns * result->tree.references.size() + MeshTree::kPadding) * sizeof(float);
+    result->mesh = std::move(mesh);
+    return result;
+}
+
+}  // namespace rayuela

@@ -1,0 +1,190 @@
+#include "tests/support/accel_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+namespace rayuela::test {
+namespace {
+
+bool identical(const Hit& a, const Hit& b) {
+    return std::bit_cast<std::uint32_t>(a.t) == std::bit_cast<std::uint32_t>(b.t) &&
+           std::bit_cast<std::uint32_t>(a.u) == std::bit_cast<std::uint32_t>(b.u) &&
+           std::bit_cast<std::uint32_t>(a.v) == std::bit_cast<std::uint32_t>(b.v) && a.object == b.object &&
+           a.primitive == b.primitive;
+}
+
+struct Answers {
+    std::vector<Hit> hits;
+    std::vector<std::uint8_t> blocked;
+};
+
+Answers trace(const Accelerator& accelerator, const std::vector<Ray>& rays) {
+    Answers answers{std::vector<Hit>(rays.size()), std::vector<std::uint8_t>(rays.size())};
+    accelerator.intersect(rays, answers.hits);
+    accelerator.occluded(rays, answers.blocked);
+    return answers;
+}
+
+::testing::AssertionResult same_answers(const Answers& expected, const Answers& actual, const std::vector<Ray>& rays) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit &e = expected.hits[i], &a = actual.hits[i];
+        const Ray& r = rays[i];
+        if (!identical(e, a)) {
+            return ::testing::AssertionFailure()
+                   << "ray " << i << " o " << r.origin.x << ' ' << r.origin.y << ' ' << r.origin.z << " d "
+                   << r.direction.x << ' ' << r.direction.y << ' ' << r.direction.z << ": list t " << e.t << " object "
+                   << e.object << " primitive " << e.primitive << ", kd t " << a.t << " object " << a.object
+                   << " primitive " << a.primitive;
+        }
+        if (actual.blocked[i] != (e.valid() ? 1 : 0) || expected.blocked[i] != actual.blocked[i]) {
+            return ::testing::AssertionFailure() << "ray " << i << ": occluded differs from intersect";
+        }
+    }
+    return ::testing::AssertionSuccess();
+}
+
+std::vector<Ray> make_rays(const std::vector<GeometryInstance>& instances, int count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) rays.push_back(make_ray(instances, random));
+    return rays;
+}
+
+void expect_same_as_list(const std::vector<GeometryInstance>& instances, const std::vector<Ray>& rays,
+                         const std::vector<int>& leaf_sizes) {
+    const Answers expected = trace(*build(instances, {.kind = AcceleratorKind::list}), rays);
+    for (const KdSplit split : {KdSplit::median, KdSplit::sah}) {
+        for (const int leaf_size : leaf_sizes) {
+            const auto kd = build(instances, {.kind = AcceleratorKind::kd, .leaf_size = leaf_size, .split = split});
+            EXPECT_TRUE(same_answers(expected, trace(*kd, rays), rays))
+                << "leaf size " << leaf_size << (split == KdSplit::sah ? " sah" : " median");
+        }
+    }
+}
+
+TEST(KdVersusList, EachLeafSizeAndSplitGivesIdenticalHits) {
+    std::vector<int> sizes;
+    for (int i = 1; i <= 64; ++i) sizes.push_back(i);
+    sizes.push_back(1 << 20);
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const auto instances = make_scene(seed, 24, 150);
+        expect_same_as_list(instances, make_rays(instances, 2000, seed), sizes);
+    }
+}
+
+TEST(KdVersusList, ManyScenes) {
+    for (std::uint64_t seed = 100; seed < 140; ++seed) {
+        const auto instances = make_scene(seed, static_cast<int>(1 + seed % 40), 60);
+        expect_same_as_list(instances, make_rays(instances, 1500, seed), {1, 4, 16});
+    }
+}
+
+/// Everything on the lattice: rays run within faces, along edges and through vertices.
+TEST(KdVersusList, LatticeRaysThroughLatticeGeometry) {
+    std::vector<GeometryInstance> instances{{make_grid(16, 0), {}}, {make_grid(8, 0), {Mat3(1), Vec3(0, 0.5f, 0)}}};
+    for (int i = -2; i < 2; ++i) {
+        const auto x = static_cast<float>(i);
+        instances.push_back({Box{Vec3(x, -1, -1), Vec3(x + 1, 0, 0)}, {}});
+        instances.push_back({Quad{Vec3(x, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {}});
+        instances.push_back({Triangle{{Vec3(x, 0, 0), Vec3(x, 1, 0), Vec3(x, 0, 1)}}, {}});
+    }
+    Random random(7);
+    const auto lattice = [&] {
+        return Vec3(random.integer(-16, 16), random.integer(-16, 16), random.integer(-16, 16)) / 8.0f;
+    };
+    std::vector<Ray> rays;
+    while (rays.size() < 6000) {
+        Ray ray{.origin = lattice()};
+        ray.direction = lattice() - ray.origin;
+        if (random.integer(0, 1)) ray.direction[random.integer(0, 2)] = 0;
+        if (random.integer(0, 1)) ray.direction[random.integer(0, 2)] = 0;
+        if (ray.direction != Vec3(0)) rays.push_back(ray);
+    }
+    expect_same_as_list(instances, rays, {1, 2, 16});
+}
+
+/// The ends of the interval count: with t_max the t of the hit it is still there, one ulp below it is not.
+TEST(KdVersusList, IntervalEndsAreInclusive) {
+    const auto instances = make_scene(11, 20, 100);
+    std::vector<Ray> rays = make_rays(instances, 3000, 12);
+    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const Answers first = trace(*list, rays);
+    std::vector<Ray> limited;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!first.hits[i].valid()) continue;
+        const float t = first.hits[i].t;
+        Ray ray = rays[i];
+        for (const float end : {t, std::nextafter(t, -kInfinity), std::nextafter(t, kInfinity)}) {
+            ray = rays[i];
+            ray.t_max = end;
+            limited.push_back(ray);
+            ray = rays[i];
+            ray.t_min = end;
+            limited.push_back(ray);
+        }
+        EXPECT_TRUE(identical(intersect(*list, limited[limited.size() - 6]), first.hits[i]));
+        EXPECT_FALSE(intersect(*list, limited[limited.size() - 4]).valid());
+    }
+    ASSERT_GT(limited.size(), 3000u);
+    expect_same_as_list(instances, limited, {1, 8});
+}
+
+TEST(KdVersusList, FarFromTheOriginAndAtEveryScale) {
+    for (const Vec3 offset : {Vec3(148376, 1234, -223423), Vec3(1e6f), Vec3(0)}) {
+        for (const float scale : {1e-6f, 1.0f, 1e4f}) {
+            Random random(5);
+            auto instances = make_scene(21, 16, 80);
+            for (GeometryInstance& instance : instances) {
+                instance.to_world = Affine{Mat3(scale), offset} * instance.to_world;
+            }
+            std::vector<Ray> rays = make_rays(make_scene(21, 16, 80), 1000, 22);
+            for (Ray& ray : rays) {
+                ray.origin = scale * ray.origin + offset;
+                ray.direction *= scale;
+            }
+            expect_same_as_list(instances, rays, {1, 16});
+        }
+    }
+}
+
+TEST(KdVersusList, StrangeRaysMissOrAgree) {
+    const auto instances = make_scene(31, 12, 50);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<float> values{nan,    kInfinity, -kInfinity, 0.0f,  -0.0f, 1e-45f, -1e-40f,
+                                    1e-38f, 3e-30f,    1.0f,       -2.5f, 1e30f, -3e38f, 0.1f};
+    Random random(3);
+    const auto any = [&] {
+        return values[static_cast<std::size_t>(random.integer(0, static_cast<int>(values.size()) - 1))];
+    };
+    std::vector<Ray> rays;
+    for (int i = 0; i < 20000; ++i) {
+        Ray ray = make_ray(instances, random);
+        for (int change = random.integer(1, 4); change > 0; --change) {
+            const int k = random.integer(0, 7);
+            if (k < 3) ray.origin[k] = any();
+            if (k >= 3 && k < 6) ray.direction[k - 3] = any();
+            if (k == 6) ray.t_min = any();
+            if (k == 7) ray.t_max = any();
+        }
+        rays.push_back(ray);
+    }
+    for (const float factor : {1e-40f, 1e-30f, 1e-20f, 1e20f, 1e30f}) {
+        for (int i = 0; i < 500; ++i) {
+            Ray ray{.origin = random.in_cube(5), .direction = random.direction() * factor};
+            rays.push_back(ray);
+        }
+    }
+    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const Answers expected = trace(*list, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Ray& r = rays[i];
+        if (!is_finite(r.origin) || !is_finite(r.direction) || r.direction == Vec3(0) || !(r.t_min <= r.t_max)) {
+            EXPECT_FALSE(expected.hits[i].valid());
+        }
+    }
+    expect_same_as_list(instances, rays, {1, 16});
+}
+
+}  // namespace
+}  // namespace rayuela::test
