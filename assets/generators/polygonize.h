@@ -89,7 +89,7 @@ private:
             triangles_.push_back({quad[0], quad[2], quad[3]});
             return;
         }
-        glm::uvec3 triangle(cut(tet[0], tet[1]), cut(tet[0], tet[2]), cut(tet[0], tet[3]));
+        glm::uvec3 triangle{cut(tet[0], tet[1]), cut(tet[0], tet[2]), cut(tet[0], tet[3])};  // braces fix the order
         if (count == 3) std::swap(triangle.y, triangle.z);
         triangles_.push_back(triangle);
     }
