@@ -1,32 +1,46 @@
 #pragma once
 
+#include "core/materials/bsdf_sample.h"
 #include "core/materials/material.h"
 #include "core/math/vec.h"
 
 #include <optional>
+#include <variant>
 
 namespace rayuela {
 
-/// A direction drawn from a Bsdf.
-struct BsdfSample {
-    Vec3 wi{0};
-    Color weight{0};        ///< eval / pdf, cosine included; for a delta lobe the ratio of the two deltas.
-    float pdf = 0;          ///< Per solid angle; of a delta lobe: the probability of having chosen it.
-    bool specular = false;  ///< From a delta lobe: no light sampling can find it.
-};
-
 /// A material at one point: textures evaluated, parameters clamped, pure from here on. Directions are unit, in the local
-/// frame whose +z is the shading normal on the side of the geometric front, and point away from the surface.
+/// frame whose +z is the shading normal on the side of the geometric front, and point away from the surface. Radiance is
+/// scaled as basic radiance L / n^2: what passes a surface is not multiplied by a ratio of squared indices, which would
+/// cancel wherever light leaves a body again. Bad input (wo in the surface, NaN) gives black, density 0 or nothing.
 class Bsdf {
 public:
     /// f(wo, wi) * |cos(wi)|; delta lobes contribute nothing.
-    Color eval(const Vec3& wo, const Vec3& wi) const;
+    Color eval(const Vec3& wo, const Vec3& wi) const { return evaluate(wo, wi).value; }
     /// Density per solid angle with which `sample` draws wi; delta lobes contribute nothing.
-    float pdf(const Vec3& wo, const Vec3& wi) const;
+    float pdf(const Vec3& wo, const Vec3& wi) const { return evaluate(wo, wi).pdf; }
+    /// Both at once, for little more than the price of one.
+    BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const;
     /// `u_lobe` in [0, 1) chooses among lobes, `u` in [0, 1)^2 a direction. Nothing where all light is absorbed.
     std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u) const;
     /// Whether any lobe is not a delta: only then can a light sample contribute.
     bool has_smooth_lobe() const;
+
+private:
+    friend Bsdf make_bsdf(const Material& material, const Vec2& uv);
+
+    template <typename List>
+    struct BsdfsOf;
+    template <typename... Materials>
+    struct BsdfsOf<std::variant<Materials...>> {
+        using type = std::variant<typename Materials::Bsdf...>;
+    };
+    /// One alternative for each material of the list.
+    using Lobes = BsdfsOf<Material>::type;
+
+    explicit Bsdf(const Lobes& lobes) : lobes_(lobes) {}
+
+    Lobes lobes_;
 };
 
 /// The material at texture coordinates uv. Which side wo is on decides between entering and leaving.
@@ -39,5 +53,9 @@ Color emitted(const Material& material, const Vec2& uv, bool front);
 bool is_emissive(const Material& material);
 /// Whether the back emits as well.
 bool emits_two_sided(const Material& material);
+/// Whether `emitted` is the same for all uv.
+bool emits_evenly(const Material& material);
+/// Whether no point of it has a smooth lobe: light samples are wasted on it.
+bool is_specular_only(const Material& material);
 
 }  // namespace rayuela

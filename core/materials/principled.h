@@ -1,14 +1,40 @@
 #pragma once
 
+#include "core/materials/bsdf_sample.h"
+#include "core/materials/microfacet.h"
 #include "core/materials/value.h"
 #include "core/math/field.h"
 
+#include <optional>
+
 namespace rayuela {
 
+/// A clear coat over GGX facets (Schlick) over a body that scatters light back or lets it through, in proportion to what
+/// the layers above leave: a white one reflects and transmits all light. The surface is thin and two-sided: light passes
+/// unbent, spread as its reflection would be (KHR_materials_transmission without a volume). Reciprocal but for the coat,
+/// which takes its share by wo alone.
+struct PrincipledBsdf {
+    Ggx facets;
+    Color facets_f0{0};   ///< Of dielectric and metal together.
+    Color metal_lost{0};  ///< Share of the light lost by the metal's facets that comes out after more bounces.
+    float dielectric_f0 = 0;
+    Color diffuse{0};
+    Color transmission{0};
+    float coat = 0;
+    Ggx coat_facets;
+
+    BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const;
+    std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u) const;
+    bool has_smooth_lobe() const;
+};
+
 /// glTF 2.0's metallic-roughness material with the KHR extensions that have come so far; names as in glTF.
-/// Energy lost between microfacets is given back.
+/// Energy lost between microfacets is given back. Emits from the front.
 struct Principled {
-    static constexpr std::string_view kType = "principled", kLabel = "Principled", kTip = "The glTF material: most things.";
+    using Bsdf = PrincipledBsdf;
+
+    static constexpr std::string_view kType = "principled", kLabel = "Principled",
+                                      kTip = "The glTF material: most things.";
 
     ColorValue base_color{Color(1), nullptr};
     FloatValue metallic{0, nullptr, 2};
@@ -22,25 +48,71 @@ struct Principled {
 
     template <typename Self, typename Visitor>
     static void visit_fields(Self& self, Visitor&& visit) {
-        visit(self.base_color, Field{.key = "base_color", .label = "Base color", .tip = "Colour of the body or of the metal.",
-                                     .role = FieldRole::reflectance, .min = 0, .max = 1});
-        visit(self.metallic, Field{.key = "metallic", .label = "Metallic", .tip = "0 is plastic, wood, stone; 1 is metal.",
-                                   .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
-        visit(self.roughness, Field{.key = "roughness", .label = "Roughness", .tip = "0 is polished, 1 is dull.",
-                                    .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
-        visit(self.ior, Field{.key = "ior", .label = "Index of refraction", .tip = "Strength of the highlight of what is not metal.",
-                              .min = 1, .max = 1000, .soft_min = 1, .soft_max = 2.5f});
-        visit(self.transmission, Field{.key = "transmission", .label = "Transmission", .tip = "Share of the light that passes through.",
-                                       .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
-        visit(self.clearcoat, Field{.key = "clearcoat", .label = "Clearcoat", .tip = "Strength of a clear layer on top.",
-                                    .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
-        visit(self.clearcoat_roughness, Field{.key = "clearcoat_roughness", .label = "Clearcoat roughness",
-                                              .tip = "Roughness of the clear layer.", .min = 0, .max = 1, .soft_min = 0, .soft_max = 1});
-        visit(self.emissive, Field{.key = "emissive", .label = "Emissive", .tip = "Colour of the light the surface gives off.",
-                                   .role = FieldRole::radiance, .min = 0, .soft_min = 0, .soft_max = 1});
-        visit(self.emissive_strength, Field{.key = "emissive_strength", .label = "Emissive strength",
-                                            .tip = "Multiplies the emissive colour.", .min = 0, .soft_min = 0, .soft_max = 50});
+        visit(self.base_color, Field{.key = "base_color",
+                                     .label = "Base color",
+                                     .tip = "Colour of the body or of the metal.",
+                                     .role = FieldRole::reflectance,
+                                     .min = 0,
+                                     .max = 1});
+        visit(self.metallic, Field{.key = "metallic",
+                                   .label = "Metallic",
+                                   .tip = "0 is plastic, wood, stone; 1 is metal.",
+                                   .min = 0,
+                                   .max = 1,
+                                   .soft_min = 0,
+                                   .soft_max = 1});
+        visit(self.roughness, Field{.key = "roughness",
+                                    .label = "Roughness",
+                                    .tip = "0 is polished, 1 is dull.",
+                                    .min = 0,
+                                    .max = 1,
+                                    .soft_min = 0,
+                                    .soft_max = 1});
+        visit(self.ior, Field{.key = "ior",
+                              .label = "Index of refraction",
+                              .tip = "Strength of the highlight of what is not metal.",
+                              .min = 1,
+                              .max = 1000,
+                              .soft_min = 1,
+                              .soft_max = 2.5f});
+        visit(self.transmission, Field{.key = "transmission",
+                                       .label = "Transmission",
+                                       .tip = "Share of the light that passes through.",
+                                       .min = 0,
+                                       .max = 1,
+                                       .soft_min = 0,
+                                       .soft_max = 1});
+        visit(self.clearcoat, Field{.key = "clearcoat",
+                                    .label = "Clearcoat",
+                                    .tip = "Strength of a clear layer on top.",
+                                    .min = 0,
+                                    .max = 1,
+                                    .soft_min = 0,
+                                    .soft_max = 1});
+        visit(self.clearcoat_roughness, Field{.key = "clearcoat_roughness",
+                                              .label = "Clearcoat roughness",
+                                              .tip = "Roughness of the clear layer.",
+                                              .min = 0,
+                                              .max = 1,
+                                              .soft_min = 0,
+                                              .soft_max = 1});
+        visit(self.emissive, Field{.key = "emissive",
+                                   .label = "Emissive",
+                                   .tip = "Colour of the light the surface gives off.",
+                                   .role = FieldRole::radiance,
+                                   .min = 0,
+                                   .soft_min = 0,
+                                   .soft_max = 1});
+        visit(self.emissive_strength, Field{.key = "emissive_strength",
+                                            .label = "Emissive strength",
+                                            .tip = "Multiplies the emissive colour.",
+                                            .min = 0,
+                                            .soft_min = 0,
+                                            .soft_max = 50});
     }
+    PrincipledBsdf bsdf(const Vec2& uv) const;
+    bool is_specular_only() const;
+    Emission emission() const { return {emissive, emissive_strength, false}; }
     bool operator==(const Principled&) const = default;
 };
 

@@ -23,6 +23,13 @@ struct FloatValue {
     bool operator==(const FloatValue&) const = default;
 };
 
+/// The light a material gives off: strength times the colour, from its front and, where two-sided, from its back.
+struct Emission {
+    const ColorValue& color;
+    float strength = 1;
+    bool two_sided = false;
+};
+
 /// Bilinear look-up with repeat in both axes; uv (0, 0) is the image's lower left corner.
 Vec4 sample_texture(const Image& image, const Vec2& uv);
 

@@ -63,8 +63,6 @@ Distribution1D::Distribution1D(std::span<const float> weights) {
     }
     double sum = 0;
     for (const float weight : weights) cdf_.push_back(static_cast<float>((sum += usable(weight)) / total_));
-    // Rounding may leave the sum below 1: the last cells that share its value end at 1 then.
-    std::ranges::replace(cdf_, float{cdf_.back()}, 1.0f);
 }
 
 Distribution1D::Draw Distribution1D::draw(float u) const {

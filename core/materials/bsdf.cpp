@@ -1,0 +1,72 @@
+#include "core/materials/bsdf.h"
+
+#include <type_traits>
+
+namespace rayuela {
+namespace {
+
+template <typename M>
+constexpr bool kEmits = requires(const M& material) {
+    material.emission();
+};
+
+/// What `function` says of the material's emission, or `otherwise` for a material that has none.
+template <typename T, typename Function>
+T of_emission(const Material& material, T otherwise, Function&& function) {
+    return std::visit(
+        [&](const auto& m) -> T {
+            if constexpr (kEmits<std::decay_t<decltype(m)>>) {
+                return function(m.emission());
+            } else {
+                return otherwise;
+            }
+        },
+        material);
+}
+
+}  // namespace
+
+BsdfValue Bsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
+    const BsdfValue f = std::visit([&](const auto& lobes) { return lobes.evaluate(wo, wi); }, lobes_);
+    return std::isfinite(f.pdf) ? f : BsdfValue{};
+}
+
+std::optional<BsdfSample> Bsdf::sample(const Vec3& wo, float u_lobe, const Vec2& u) const {
+    if (!(std::abs(wo.z) > 0)) return std::nullopt;
+    std::optional<BsdfSample> s = std::visit([&](const auto& lobes) { return lobes.sample(wo, u_lobe, u); }, lobes_);
+    // A density of 0, infinity or NaN comes from directions at the very edge of a lobe: rounding took them outside.
+    if (!s || !(s->pdf > 0 && s->pdf < INFINITY) || is_black(s->weight)) return std::nullopt;
+    return s;
+}
+
+bool Bsdf::has_smooth_lobe() const {
+    return std::visit([](const auto& lobes) { return lobes.has_smooth_lobe(); }, lobes_);
+}
+
+Bsdf make_bsdf(const Material& material, const Vec2& uv) {
+    return std::visit([&](const auto& m) { return Bsdf(Bsdf::Lobes(m.bsdf(uv))); }, material);
+}
+
+Color emitted(const Material& material, const Vec2& uv, bool front) {
+    return of_emission(material, Color(0), [&](const Emission& e) {
+        return front || e.two_sided ? e.strength * evaluate(e.color, uv) : Color(0);
+    });
+}
+
+bool is_emissive(const Material& material) {
+    return of_emission(material, false, [](const Emission& e) { return !is_black(e.strength * e.color.value); });
+}
+
+bool emits_two_sided(const Material& material) {
+    return of_emission(material, false, [](const Emission& e) { return e.two_sided; });
+}
+
+bool emits_evenly(const Material& material) {
+    return of_emission(material, true, [](const Emission& e) { return e.color.texture == nullptr; });
+}
+
+bool is_specular_only(const Material& material) {
+    return std::visit([](const auto& m) { return m.is_specular_only(); }, material);
+}
+
+}  // namespace rayuela

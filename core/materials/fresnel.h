@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/math/vec.h"
+
+#include <cmath>
+
+namespace rayuela {
+
+/// Share of unpolarized light that a boundary reflects. `cos_i` in [0, 1] is the cosine of incidence, `eta` > 0 the index
+/// of the other side relative to this one; 1 at total reflection. Fresnel's equations in a form without cancellation:
+/// with g = eta cos_t = sqrt(eta^2 - 1 + cos_i^2),
+///     r_s = -(eta^2 - 1) / (cos_i + g)^2,   r_p = (eta^2 - 1) ((eta^2 + 1) cos_i^2 - 1) / (eta^2 cos_i + g)^2.
+inline float fresnel_dielectric(float cos_i, float eta) {
+    const float k = (eta - 1) * (eta + 1);
+    const float g_squared = k + cos_i * cos_i;
+    if (!(g_squared > 0)) return k == 0 ? 0.0f : 1.0f;
+    const float g = std::sqrt(g_squared);
+    const float s = cos_i + g;
+    const float p = (k + 1) * cos_i + g;
+    const float r_s = k / (s * s);
+    const float r_p = k / p * (((k + 2) * cos_i * cos_i - 1) / p);
+    return std::fmin(0.5f * (r_s * r_s + r_p * r_p), 1.0f);
+}
+
+/// Reflectance at normal incidence.
+inline float fresnel_normal(float eta) {
+    const float r = (eta - 1) / (eta + 1);
+    return r * r;
+}
+
+/// (1 - cos)^5: Schlick's weight of grazing reflection, R = f0 + (1 - f0) weight.
+inline float schlick_weight(float cos_i) {
+    const float m = 1 - cos_i;
+    return (m * m) * (m * m) * m;
+}
+
+}  // namespace rayuela
