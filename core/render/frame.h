@@ -26,19 +26,19 @@ enum class SessionPhase : std::uint8_t {
 /// What a session has done since accumulation last restarted (counters) or for the current scene (trees).
 struct RenderStatistics {
     SessionPhase phase = SessionPhase::idle;
-    int spp = 0;                       ///< Samples in every pixel.
-    std::uint64_t samples = 0;         ///< Camera paths.
-    std::uint64_t rays = 0;            ///< Closest-hit rays.
-    std::uint64_t shadow_rays = 0;     ///< Any-hit rays.
+    int spp = 0;                    ///< Samples in every pixel.
+    std::uint64_t samples = 0;      ///< Camera paths.
+    std::uint64_t rays = 0;         ///< Closest-hit rays.
+    std::uint64_t shadow_rays = 0;  ///< Any-hit rays.
     std::array<std::uint64_t, kRejectionCount> rejected{};
-    double render_seconds = 0;         ///< Wall time in passes, pauses left out.
+    double render_seconds = 0;  ///< Wall time in passes, pauses left out.
     double samples_per_second = 0;
-    double rays_per_second = 0;        ///< Both kinds.
-    double estimated_error = 0;        ///< Estimated relMSE of the image from its two halves; 0 while unknown.
-    double build_seconds = 0;          ///< Wall time of the last update of the render scene.
+    double rays_per_second = 0;  ///< Both kinds.
+    double estimated_error = 0;  ///< Estimated relMSE of the image from its two halves; 0 while unknown.
+    double build_seconds = 0;    ///< Wall time of the last update of the render scene that built trees.
     AccelStats accel;
-    std::uint64_t memory_bytes = 0;    ///< Trees, meshes, images and film.
-    std::uint64_t restarts = 0;        ///< How often accumulation has started anew since the session began.
+    std::uint64_t memory_bytes = 0;  ///< Trees, meshes, images and film.
+    std::uint64_t restarts = 0;      ///< How often accumulation has started anew since the session began.
     int threads = 0;
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "core/accel/accelerator.h"
+#include "core/lights/environment_light.h"
 #include "core/lights/light_table.h"
+#include "core/materials/bsdf.h"
 #include "core/render/features.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_diff.h"
@@ -12,6 +14,15 @@
 
 namespace rayuela {
 
+/// A material as the shading loop wants it: what does not vary over the surface is worked out once.
+struct PackedMaterial {
+    Material material;
+    Bsdf bsdf;              ///< Where `textured` is false.
+    bool textured = false;  ///< The Bsdf and the emission vary over the surface.
+    bool emissive = false;
+    bool smooth = true;  ///< Light samples can contribute.
+};
+
 /// What the kernels read, derived from a Scene: flattened objects, packed materials, trees, lights. Immutable; parts that
 /// an edit does not touch are shared between versions.
 class RenderScene {
@@ -21,23 +32,37 @@ public:
                                                      const SceneChanges& changes, BuildControl& control);
 
     const Scene& scene() const { return *scene_; }
+    const std::shared_ptr<const Scene>& shared_scene() const { return scene_; }
     const Features& features() const { return features_; }
     const Accelerator& accelerator() const { return *accelerator_; }
     const LightTable& lights() const { return *lights_; }
+    const EnvironmentLight& environment() const { return environment_; }
     /// The scene object a Hit::object belongs to, and its material.
     ObjectId object_id(std::uint32_t hit_object) const { return (*objects_)[hit_object].id; }
-    const Material& material(std::uint32_t hit_object) const { return materials_[(*objects_)[hit_object].material]; }
+    const PackedMaterial& packed_material(std::uint32_t hit_object) const {
+        return (*materials_)[(*objects_)[hit_object].material];
+    }
+    const Material& material(std::uint32_t hit_object) const { return packed_material(hit_object).material; }
+    /// Trees, lights, meshes and images, each counted once.
+    std::uint64_t memory_bytes() const;
 
 private:
     struct FlatObject {
         ObjectId id;
         std::uint32_t material;
     };
+    using FlatObjects = std::vector<FlatObject>;
+    using PackedMaterials = std::vector<PackedMaterial>;
+
+    void flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const;
+    Features find_features() const;
+
     std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const std::vector<FlatObject>> objects_;
-    std::vector<Material> materials_;
+    std::shared_ptr<const FlatObjects> objects_;
+    std::shared_ptr<const PackedMaterials> materials_;  ///< The default material, then the scene's.
     std::shared_ptr<const Accelerator> accelerator_;
     std::shared_ptr<const LightTable> lights_;
+    EnvironmentLight environment_;
     Features features_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace rayuela {
 
@@ -15,10 +16,11 @@ struct SessionOptions {
 /// Progress that changes between frames.
 struct SessionStatus {
     SessionPhase phase = SessionPhase::idle;
-    double build_progress = 0;   ///< In [0, 1] while building.
-    double pass_progress = 0;    ///< In [0, 1] within the current pass.
-    std::uint64_t submitted = 0; ///< Scenes submitted so far.
-    std::uint64_t taken = 0;     ///< The last of them that the render thread has begun with.
+    double build_progress = 0;    ///< In [0, 1] while building.
+    double pass_progress = 0;     ///< In [0, 1] within the current pass.
+    std::uint64_t submitted = 0;  ///< Scenes submitted so far.
+    std::uint64_t taken = 0;      ///< The last of them that the render thread has begun with.
+    std::string problem;          ///< Why the newest scene could not be rendered (out of memory); else empty.
 };
 
 /// Renders the latest submitted scene on its own threads, pass after pass. No call waits for the renderer, except
@@ -45,7 +47,8 @@ public:
 
     /// Headless: blocks until the scene's limit is reached, or `interrupted` (asked about 20 times a second, with the
     /// current status and statistics) returns true; then publishes and returns the frame of what is there.
-    std::shared_ptr<const Frame> wait(const std::function<bool(const SessionStatus&, const RenderStatistics&)>& interrupted);
+    std::shared_ptr<const Frame> wait(
+        const std::function<bool(const SessionStatus&, const RenderStatistics&)>& interrupted);
 
 private:
     struct Impl;

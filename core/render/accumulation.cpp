@@ -1,0 +1,100 @@
+#include "core/render/accumulation.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+
+#include <algorithm>
+
+namespace rayuela {
+
+namespace {
+
+/// Tiles have at least this side where the film is large enough, and less than twice of it.
+constexpr int kTileSide = 32;
+/// Paths in flight that the intersection kernels want; smaller tiles carry several samples at once.
+constexpr std::size_t kBatchPaths = 1024;
+
+}  // namespace
+
+Accumulation::Accumulation(int width, int height)
+    : film_(width, height), object_ids_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    const int columns = std::max(1, width / kTileSide), rows = std::max(1, height / kTileSide);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            tiles_.push_back({.x0 = column * width / columns,
+                              .y0 = row * height / rows,
+                              .x1 = (column + 1) * width / columns,
+                              .y1 = (row + 1) * height / rows});
+        }
+    }
+}
+
+int Accumulation::samples() const {
+    return std::ranges::min_element(tiles_, {}, &Tile::samples)->samples;
+}
+
+void Accumulation::restart() {
+    for (Tile& tile : tiles_) tile.samples = 0;
+    film_.clear_rejected();
+}
+
+void Accumulation::clear_unstarted() {
+    for (const Tile& tile : tiles_) {
+        if (tile.samples == 0) clear(tile);
+    }
+}
+
+void Accumulation::clear(const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const std::size_t pixel =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(film_.width()) + static_cast<std::size_t>(x);
+            film_.clear(pixel);
+            object_ids_[pixel] = 0;
+        }
+    }
+}
+
+RayCounts Accumulation::add_samples(const PathTracer& tracer, int samples, PassControl& control) {
+    for (PathBatch& batch : batches_) batch.counts = {};
+    const tbb::blocked_range<std::size_t> all(0, tiles_.size(), 1);
+    const auto add_to_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
+        PathBatch& batch = batches_.local();
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            add_to_tile(tiles_[i], tracer, samples, control, batch);
+    };
+    tbb::parallel_for(all, add_to_tiles, tbb::simple_partitioner());
+    RayCounts counts;
+    for (const PathBatch& batch : batches_) counts += batch.counts;
+    return counts;
+}
+
+void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples, PassControl& control,
+                               PathBatch& batch) {
+    if (tile.samples == 0) clear(tile);
+    const int samples_at_once = static_cast<int>(std::max<std::size_t>(1, kBatchPaths / tile.pixels()));
+    while (tile.samples < samples) {
+        if (control.cancelled || std::chrono::steady_clock::now() >= control.stop_at) return;
+        const int end = std::min(samples, tile.samples + samples_at_once);
+        batch.ids.clear();
+        for (int sample = tile.samples; sample < end; ++sample) {
+            for (int y = tile.y0; y < tile.y1; ++y) {
+                for (int x = tile.x0; x < tile.x1; ++x) {
+                    batch.ids.push_back(
+                        {static_cast<std::uint32_t>(y * film_.width() + x), static_cast<std::uint32_t>(sample)});
+                }
+            }
+        }
+        if (!tracer.trace(batch, control.cancelled)) return;
+        for (std::size_t i = 0; i < batch.ids.size(); ++i) {
+            const auto [pixel, sample] = batch.ids[i];
+            film_.add(pixel, sample, batch.radiance[i]);
+            if (sample == 0) object_ids_[pixel] = tracer.object_id(batch.first_object[i]);
+        }
+        tile.samples = end;
+        control.paths_done += batch.ids.size();
+    }
+}
+
+}  // namespace rayuela

@@ -1,0 +1,75 @@
+#include "core/render/camera_rays.h"
+
+#include "core/math/frame.h"
+
+#include <cmath>
+
+namespace rayuela {
+
+namespace {
+
+struct Axes {
+    Vec3d forward, right, up;
+};
+
+/// `v` at unit length without overflow or underflow on the way, or `fallback` where it has no direction.
+Vec3d unit_or(const Vec3d& v, const Vec3d& fallback) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+Axes view_axes(const Camera& camera) {
+    const Vec3d forward = unit_or(Vec3d(camera.target) - Vec3d(camera.position), Vec3d(0, 0, -1));
+    // The cosine below which `up` still says which way is up: its sine is lost in the rounding of the two vectors.
+    constexpr double kParallel = 1 - 1e-12;
+    Vec3d up = unit_or(Vec3d(camera.up), Vec3d(0, 1, 0));
+    if (std::abs(glm::dot(up, forward)) > kParallel) up = Vec3d(Frame(Vec3(forward)).s);
+    const Vec3d right = glm::normalize(glm::cross(forward, up));
+    return {forward, right, glm::cross(right, forward)};
+}
+
+float tent(float u) {
+    return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
+}
+
+}  // namespace
+
+CameraRays::CameraRays(const Camera& camera, double aspect)
+    : origin_(camera.position), lens_radius_(camera.lens_radius), focus_distance_(camera.focus_distance) {
+    const auto [forward, right, up] = view_axes(camera);
+    const double half_height = std::tan(glm::radians(static_cast<double>(camera.vfov)) / 2);
+    const double half_width = half_height * aspect;
+    forward_ = Vec3(forward);
+    right_ = Vec3(right);
+    up_ = Vec3(up);
+    corner_ = Vec3(forward - half_width * right + half_height * up);
+    across_ = Vec3(2 * half_width * right);
+    down_ = Vec3(-2 * half_height * up);
+}
+
+Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
+    const Vec3 direction = corner_ + position.x * across_ + position.y * down_;
+    if (lens_radius_ == 0) return {.origin = origin_, .direction = glm::normalize(direction)};
+    // Relative to the lens centre: the distance to the focus plane is not lost in the camera's coordinates.
+    const Vec3 offset = lens_radius_ * (lens.x * right_ + lens.y * up_);
+    return {.origin = origin_ + offset, .direction = glm::normalize(focus_distance_ * direction - offset)};
+}
+
+Vec2 sample_filter(PixelFilter filter, const Vec2& u) {
+    switch (filter) {
+        case PixelFilter::box:
+            return u - 0.5f;
+        case PixelFilter::tent:
+            return {tent(u.x), tent(u.y)};
+        case PixelFilter::gaussian:
+            break;
+    }
+    // Box & Muller in polar form, the radius by inversion of its distribution cut at kRadius.
+    constexpr float kSigma = 0.5f, kRadius = 1.5f;
+    const float mass = 1 - std::exp(-kRadius * kRadius / (2 * kSigma * kSigma));
+    const float radius = kSigma * std::sqrt(-2 * std::log(1 - u.x * mass));
+    const float angle = 2 * kPi * u.y;
+    return radius * Vec2(std::cos(angle), std::sin(angle));
+}
+
+}  // namespace rayuela

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/math/ray.h"
+#include "core/scene/scene.h"
+
+namespace rayuela {
+
+/// A Camera made ready: maps positions of the image and of the lens to rays.
+class CameraRays {
+public:
+    /// `aspect` is width / height of the image plane. Directions that do not span a frame (target at the position, up
+    /// along the view) are replaced by some that do.
+    CameraRays(const Camera& camera, double aspect);
+
+    /// Through `position` of the image, (0, 0) its upper left and (1, 1) its lower right corner, from the point `lens` of
+    /// the unit disc. The direction is unit.
+    Ray ray(const Vec2& position, const Vec2& lens) const;
+    /// Unit view axis.
+    const Vec3& forward() const { return forward_; }
+
+private:
+    Vec3 origin_, forward_;
+    Vec3 right_, up_;              ///< Unit.
+    Vec3 corner_, across_, down_;  ///< Image plane at distance 1, relative to the origin.
+    float lens_radius_, focus_distance_;
+};
+
+/// Importance sampling of the pixel filter: the offset from the pixel's centre, in pixels, for `u` in [0, 1)^2. All samples
+/// weigh the same (Ernst, Stamminger & Greiner, "Filter Importance Sampling", 2006).
+/// box: 1 pixel wide. tent: 2 pixels wide. gaussian: standard deviation 1/2, cut at a radius of 3/2.
+Vec2 sample_filter(PixelFilter filter, const Vec2& u);
+
+}  // namespace rayuela

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "core/math/image.h"
+#include "core/render/frame.h"
+
+#include <array>
+#include <atomic>
+#include <optional>
+#include <vector>
+
+namespace rayuela {
+
+/// Sums of the samples of each pixel in double precision, in two halves (even and odd samples). Different pixels may be
+/// added to from different threads; the sums of a pixel depend only on the order of its own samples.
+class Film {
+public:
+    Film(int width, int height);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    /// Adds sample number `sample` of the pixel, or counts why it is left out.
+    void add(std::size_t pixel, std::uint32_t sample, const Color& radiance);
+    /// Forgets the pixel's samples.
+    void clear(std::size_t pixel) { pixels_[pixel] = {}; }
+    void clear_rejected();
+
+    /// Accepted samples of the pixel.
+    std::uint64_t count(std::size_t pixel) const {
+        return pixels_[pixel].count[0] + std::uint64_t(pixels_[pixel].count[1]);
+    }
+    /// Mean of the accepted samples; black where there are none.
+    Vec3d mean(std::size_t pixel) const;
+    /// Estimated variance of the mean's luminance: sample variance / count. 0 below two samples.
+    double variance_of_mean(std::size_t pixel) const;
+    /// The mean of all pixels, alpha 1. Runs on the calling thread's task arena.
+    Image image() const;
+    /// Estimate of the mean over pixels and channels of (mean - truth)^2 / (truth^2 + 0.01). The halves A and B of nA and
+    /// nB samples have the same expectation, so E[(A - B)^2] = s^2 (1/nA + 1/nB) and the mean's error, s^2 / (nA + nB), is
+    /// expected to be (A - B)^2 nA nB / (nA + nB)^2: without bias for independent samples; stratified ones, whose
+    /// halves complement each other, err less than it says. 0 while a pixel has an empty half.
+    double relative_error() const;
+
+    std::array<std::uint64_t, kRejectionCount> rejected() const;
+    std::uint64_t memory_bytes() const { return pixels_.size() * sizeof(Pixel); }
+
+private:
+    struct alignas(64) Pixel {
+        std::array<Vec3d, 2> sum{Vec3d(0), Vec3d(0)};
+        double luminance_squared = 0;
+        std::array<std::uint32_t, 2> count{};
+    };
+    int width_, height_;
+    std::vector<Pixel> pixels_;
+    std::array<std::atomic<std::uint64_t>, kRejectionCount> rejected_{};
+};
+
+/// Why a sample of this radiance cannot be added, if so.
+std::optional<Rejection> rejection(const Color& radiance);
+
+}  // namespace rayuela

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/accel/surface_point.h"
+#include "core/math/sampler.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace rayuela {
+
+/// Names one camera path of a film: everything random about it follows from this and the scene's seed.
+struct PathId {
+    std::uint32_t pixel = 0;  ///< Row-major, from the upper left.
+    std::uint32_t sample = 0;
+};
+
+/// What a path carries from one bounce to the next.
+struct PathState {
+    Color throughput{1};
+    std::uint32_t path = 0;  ///< Which of the batch.
+    Vec3 origin{0};          ///< Point of the last scattering, not offset.
+    float bsdf_pdf = 0;  ///< Density with which the last scattering chose the direction; 0 for camera and delta lobes.
+};
+
+struct RayCounts {
+    std::uint64_t paths = 0, rays = 0, shadow_rays = 0;
+
+    RayCounts& operator+=(const RayCounts& other) {
+        paths += other.paths;
+        rays += other.rays;
+        shadow_rays += other.shadow_rays;
+        return *this;
+    }
+};
+
+/// Many paths on their way, as a structure of arrays, and the scratch memory of the stages that drive them. Kept by a
+/// worker from batch to batch: after the first nothing is allocated.
+struct PathBatch {
+    // One a path.
+    std::vector<PathId> ids;
+    std::vector<Sampler> samplers;
+    std::vector<Color> radiance;              ///< The result.
+    std::vector<std::uint32_t> first_object;  ///< Hit::object of the camera ray.
+
+    // One a path still on its way, in the order of the paths.
+    std::vector<PathState> states;
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    std::vector<SurfacePoint> points;
+
+    // One a shadow ray.
+    std::vector<Ray> shadow_rays;
+    std::vector<Color> shadow_light;  ///< What arrives when nothing is in the way.
+    std::vector<std::uint32_t> shadow_paths;
+    std::vector<std::uint8_t> blocked;
+
+    RayCounts counts;  ///< Of all batches since the worker set them to 0.
+};
+
+}  // namespace rayuela

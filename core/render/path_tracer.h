@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/render/camera_rays.h"
+#include "core/render/path_batch.h"
+#include "core/render/render_scene.h"
+
+#include <atomic>
+
+namespace rayuela {
+
+/// Parts of the algorithm that can be left out; the expected image is the same. For tests and benchmarks.
+struct PathTracerOptions {
+    bool light_sampling = true;  ///< Else light is found by scattered rays alone.
+    bool mis = true;             ///< Else light that can be sampled counts by its samples alone, after smooth lobes.
+    bool russian_roulette = true;
+};
+
+/// Unidirectional path tracing with light sampling (Kajiya 1986; combined by multiple importance sampling, Veach & Guibas
+/// 1995), many paths at once, stage by stage. What a path finds depends on its PathId alone. Immutable.
+class PathTracer {
+public:
+    /// Of an image of width x height pixels that shows what the scene's film does. Keeps a reference to `scene`.
+    PathTracer(const RenderScene& scene, int width, int height, const PathTracerOptions& options = {});
+
+    /// Traces the paths named by batch.ids; fills batch.radiance and batch.first_object. False, and no result, when
+    /// `cancelled` became true on the way.
+    bool trace(PathBatch& batch, const std::atomic<bool>& cancelled) const;
+
+    /// ObjectId::value of the object that a Hit::object belongs to; 0 for kNone.
+    std::uint32_t object_id(std::uint32_t hit_object) const {
+        return hit_object == kNone ? 0 : scene_.object_id(hit_object).value;
+    }
+
+private:
+    struct Interaction;
+
+    void camera_rays(PathBatch& batch) const;
+    void intersect(PathBatch& batch) const;
+    void surface_interactions(PathBatch& batch) const;
+    void shade(PathBatch& batch, int bounce) const;
+    void add_unblocked_light(PathBatch& batch) const;
+
+    Color environment_light(const PathState& state, const Vec3& direction) const;
+    Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;
+    void sample_light(PathBatch& batch, const PathState& state, const Interaction& at, int bounce) const;
+    bool scatter(PathBatch& batch, PathState& state, Ray& ray, const Interaction& at, int bounce) const;
+    float scattering_weight(float bsdf_pdf, float light_pdf) const;
+
+    const RenderScene& scene_;
+    int width_, height_;
+    PathTracerOptions options_;
+    CameraRays camera_;
+    int rr_start_;
+    bool light_sampling_;
+};
+
+/// Replays one sample of the scene's film: the same stages on a batch of one, the same radiance to the last bit.
+Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options = {});
+
+}  // namespace rayuela

@@ -1,0 +1,21 @@
+#include "core/accel/surface_point.h"
+#include "core/render/camera_rays.h"
+#include "core/render/render_scene.h"
+
+namespace rayuela {
+
+std::optional<Pick> pick(const RenderScene& scene, const Vec2& position) {
+    const Scene& description = scene.scene();
+    const CameraRays camera(description.camera, static_cast<double>(description.film.width) / description.film.height);
+    const Ray ray = camera.ray(position, Vec2(0));
+    Hit hit;
+    scene.accelerator().intersect({&ray, 1}, {&hit, 1});
+    if (!hit.valid()) return std::nullopt;
+    const SurfacePoint surface = surface_point(scene.accelerator().instances(), ray, hit);
+    return Pick{.object = scene.object_id(hit.object),
+                .point = surface.p,
+                .normal = surface.ns,
+                .distance = glm::dot(surface.p - description.camera.position, camera.forward())};
+}
+
+}  // namespace rayuela

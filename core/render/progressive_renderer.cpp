@@ -1,0 +1,188 @@
+#include "core/render/progressive_renderer.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace rayuela {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A pass cut shorter than this says nothing about speed.
+constexpr std::uint64_t kMeasurablePaths = 1000;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Clock::duration to_duration(double seconds) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+bool has_size(const Accumulation* accumulation, const glm::ivec2& size) {
+    return accumulation && accumulation->film().width() == size.x && accumulation->film().height() == size.y;
+}
+
+int hardware_threads() {
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+ProgressiveRenderer::ProgressiveRenderer(bool interactive, int threads) : interactive_(interactive) {
+    set_threads(threads);
+}
+
+void ProgressiveRenderer::set_threads(int threads) {
+    const int wanted = threads > 0 ? threads : hardware_threads();
+    if (wanted == threads_) return;
+    threads_ = wanted;
+    oversubscription_.reset();
+    if (wanted > hardware_threads()) {
+        oversubscription_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                                  static_cast<std::size_t>(wanted));
+    }
+    arena_.terminate();
+    arena_.initialize(wanted);
+}
+
+bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl& control) {
+    const SceneChanges changes = render_scene_ ? diff(render_scene_->scene(), *scene) : all_changes();
+    const auto start = Clock::now();
+    auto updated =
+        arena_.execute([&] { return RenderScene::update(render_scene_.get(), std::move(scene), changes, control); });
+    if (!updated) return false;
+    const glm::ivec2 size(updated->scene().film.width, updated->scene().film.height);
+    if (!has_size(film_.get(), size)) film_ = std::make_unique<Accumulation>(size.x, size.y);
+    render_scene_ = std::move(updated);
+    memory_bytes_ = render_scene_->memory_bytes() + film_->film().memory_bytes();
+    if (changes.geometry || changes.accel) build_seconds_ = seconds_since(start);
+    if (changes.restarts()) {
+        restart();
+    } else {
+        film_unpublished_ = film_shown_;  // The samples stay, but what is said beside the image has changed.
+    }
+    return true;
+}
+
+void ProgressiveRenderer::restart() {
+    film_->restart();
+    if (preview_) preview_->restart();
+    preview_unpublished_ = film_unpublished_ = film_shown_ = false;
+    coarse_passes_ = 0;
+    counts_ = {};
+    render_seconds_ = estimated_error_ = 0;
+    taken_at_ = Clock::now();
+    ++restarts_;
+}
+
+ScheduleState ProgressiveRenderer::schedule_state() const {
+    const RenderSettings& settings = scene().render;
+    return {.width = film_->film().width(),
+            .height = film_->film().height(),
+            .interactive = interactive_,
+            .paused = paused_,
+            .max_samples = settings.max_samples,
+            .max_seconds = settings.max_seconds,
+            .samples = film_->samples(),
+            .coarse_passes = coarse_passes_,
+            .coarse_divisor = coarse_divisor_,
+            .render_seconds = render_seconds_,
+            .quiet_seconds = seconds_since(taken_at_),
+            .seconds_per_path = seconds_per_path_,
+            .publish_seconds = publish_seconds_,
+            .since_publication = seconds_since(published_at_),
+            .unpublished = film_unpublished_,
+            .film_shown = film_shown_};
+}
+
+std::uint64_t ProgressiveRenderer::paths_of(const Pass& pass) const {
+    const glm::ivec2 size = size_of(pass);
+    const int samples = pass.kind == Pass::Kind::coarse ? 1 : pass.samples - film_->samples();
+    return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) *
+           static_cast<std::uint64_t>(samples);
+}
+
+glm::ivec2 ProgressiveRenderer::size_of(const Pass& pass) const {
+    return glm::max(glm::ivec2(1), glm::ivec2(film_->film().width(), film_->film().height()) / pass.divisor);
+}
+
+void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& cancelled,
+                                 std::atomic<std::uint64_t>& paths_done) {
+    const bool coarse = pass.kind == Pass::Kind::coarse;
+    const glm::ivec2 size = size_of(pass);
+    if (coarse && !has_size(preview_.get(), size)) preview_ = std::make_unique<Accumulation>(size.x, size.y);
+    Accumulation& target = coarse ? *preview_ : *film_;
+    const int samples = coarse ? target.samples() + 1 : pass.samples;
+    const auto start = Clock::now();
+    PassControl control{.cancelled = cancelled, .paths_done = paths_done};
+    if (pass.stop_at > 0) control.stop_at = start + to_duration(pass.stop_at - render_seconds_);
+    const PathTracer tracer(*render_scene_, size.x, size.y);
+    const RayCounts traced = arena_.execute([&] { return target.add_samples(tracer, samples, control); });
+
+    const double seconds = seconds_since(start);
+    render_seconds_ += seconds;
+    counts_ += traced;
+    if (traced.paths >= kMeasurablePaths) seconds_per_path_ = seconds / static_cast<double>(traced.paths);
+    if (!coarse) {
+        film_unpublished_ |= traced.paths > 0;
+    } else if (target.samples() == samples) {
+        preview_unpublished_ = true;
+        ++coarse_passes_;
+        coarse_divisor_ = pass.divisor;
+    }
+}
+
+bool ProgressiveRenderer::publication_due() const {
+    return (preview_unpublished_ && !film_complete()) || publish_now(schedule_state());
+}
+
+std::shared_ptr<const Frame> ProgressiveRenderer::publish(SessionPhase phase, bool flush) {
+    const auto start = Clock::now();
+    const bool coarse = !film_complete() && preview_unpublished_ && !flush;
+    if (!film_complete() && !coarse) film_->clear_unstarted();
+    const Accumulation& source = coarse ? *preview_ : *film_;
+    auto frame = std::make_shared<Frame>();
+    frame->version = ++version_;
+    frame->coarse = coarse;
+    frame->object_ids = source.object_ids();
+    frame->render_scene = render_scene_;
+    frame->scene = render_scene_->shared_scene();
+    arena_.execute([&] {
+        frame->image = source.film().image();
+        estimated_error_ = coarse ? 0 : source.film().relative_error();
+    });
+    frame->statistics = statistics(phase);
+    if (!coarse) {
+        film_shown_ = true;
+        film_unpublished_ = false;
+        publish_seconds_ = seconds_since(start);
+    }
+    preview_unpublished_ = false;
+    published_at_ = Clock::now();
+    return frame;
+}
+
+RenderStatistics ProgressiveRenderer::statistics(SessionPhase phase) const {
+    const auto rate = [&](std::uint64_t count) {
+        return render_seconds_ > 0 ? static_cast<double>(count) / render_seconds_ : 0;
+    };
+    return {.phase = phase,
+            .spp = film_->samples(),
+            .samples = counts_.paths,
+            .rays = counts_.rays,
+            .shadow_rays = counts_.shadow_rays,
+            .rejected = film_->film().rejected(),
+            .render_seconds = render_seconds_,
+            .samples_per_second = rate(counts_.paths),
+            .rays_per_second = rate(counts_.rays + counts_.shadow_rays),
+            .estimated_error = estimated_error_,
+            .build_seconds = build_seconds_,
+            .accel = render_scene_->accelerator().stats(),
+            .memory_bytes = memory_bytes_,
+            .restarts = restarts_,
+            .threads = threads_};
+}
+
+}  // namespace rayuela

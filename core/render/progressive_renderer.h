@@ -1,0 +1,76 @@
+#pragma once
+
+#include "core/render/accumulation.h"
+#include "core/render/frame.h"
+#include "core/render/render_scene.h"
+#include "core/render/schedule.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <memory>
+
+namespace rayuela {
+
+/// Renders one scene pass by pass and follows its edits: all of a RenderSession but its thread. Not thread-safe; uses a
+/// task arena of its own inside.
+class ProgressiveRenderer {
+public:
+    ProgressiveRenderer(bool interactive, int threads);
+
+    /// Makes `scene` the one to render; rebuilds what differs from the one before and restarts accumulation where the
+    /// image changes. False, and nothing happens, when the build was cancelled.
+    bool take(std::shared_ptr<const Scene> scene, BuildControl& control);
+    void set_threads(int threads);
+    void set_paused(bool paused) { paused_ = paused; }
+    /// Throws all samples away.
+    void restart();
+
+    bool has_scene() const { return render_scene_ != nullptr; }
+    const Scene& scene() const { return render_scene_->scene(); }
+    /// Wall time of the last update that built trees.
+    double build_seconds() const { return build_seconds_; }
+
+    /// The following need a scene.
+    Pass next_pass() const { return rayuela::next_pass(schedule_state()); }
+    /// How many paths `pass` has, if it renders.
+    std::uint64_t paths_of(const Pass& pass) const;
+    /// Does `pass`, or as much of it as `cancelled` allows.
+    void render(const Pass& pass, const std::atomic<bool>& cancelled, std::atomic<std::uint64_t>& paths_done);
+    /// Whether there is a new image worth showing.
+    bool publication_due() const;
+    /// The newest image, with statistics as of now: the film, or the preview while the film has pixels without samples. `flush`: the film as it is.
+    std::shared_ptr<const Frame> publish(SessionPhase phase, bool flush = false);
+    /// The estimated error in it is that of the last publication.
+    RenderStatistics statistics(SessionPhase phase) const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    ScheduleState schedule_state() const;
+    glm::ivec2 size_of(const Pass& pass) const;
+    bool film_complete() const { return film_->samples() > 0; }
+
+    const bool interactive_;
+    bool paused_ = false;
+    int threads_ = 0;
+    tbb::task_arena arena_;
+    std::unique_ptr<tbb::global_control> oversubscription_;  ///< Where more threads are asked for than TBB has.
+
+    std::shared_ptr<const RenderScene> render_scene_;
+    double build_seconds_ = 0;
+    std::uint64_t memory_bytes_ = 0;
+    Clock::time_point taken_at_{};
+
+    std::unique_ptr<Accumulation> film_, preview_;
+    bool preview_unpublished_ = false, film_unpublished_ = false, film_shown_ = false;
+    int coarse_passes_ = 0, coarse_divisor_ = 1;
+    RayCounts counts_;
+    double render_seconds_ = 0, estimated_error_ = 0;
+    double seconds_per_path_ = 0, publish_seconds_ = 0;
+    Clock::time_point published_at_{};
+    std::uint64_t version_ = 0, restarts_ = 0;
+};
+
+}  // namespace rayuela

@@ -1,0 +1,157 @@
+#include "core/render/render_scene.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace rayuela {
+
+namespace {
+
+/// Calls use(image) for every image of the material.
+template <typename Use>
+void for_each_texture(const Material& material, Use&& use) {
+    const auto visit_field = [&](const auto& value, const Field&) {
+        if constexpr (requires { value.texture; }) {
+            if (value.texture) use(*value.texture);
+        }
+    };
+    std::visit([&](const auto& m) { m.visit_fields(m, visit_field); }, material);
+}
+
+PackedMaterial pack(const Material& material) {
+    bool textured = false;
+    for_each_texture(material, [&](const Image&) { textured = true; });
+    return {.material = material,
+            .bsdf = make_bsdf(material, Vec2(0)),
+            .textured = textured,
+            .emissive = is_emissive(material),
+            .smooth = !is_specular_only(material)};
+}
+
+std::vector<PackedMaterial> pack_all(const Scene& scene) {
+    std::vector<PackedMaterial> packed{pack(kDefaultMaterial)};
+    for (const MaterialEntry& entry : scene.materials) packed.push_back(pack(entry.material));
+    return packed;
+}
+
+/// The shape as rays meet it, unless it is a group or its file is missing. glTF files are flattened into their parts.
+std::optional<TracedShape> traced_shape(const Shape& shape) {
+    return std::visit(
+        [](const auto& s) -> std::optional<TracedShape> {
+            using T = std::decay_t<decltype(s)>;
+            if constexpr (std::is_constructible_v<TracedShape, const T&>) {
+                return s;
+            } else if constexpr (std::is_same_v<T, Mesh>) {
+                if (s.data) return s.data;
+            }
+            return std::nullopt;
+        },
+        shape);
+}
+
+std::uint64_t bytes(const TriangleMesh& mesh) {
+    return mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3) + mesh.uvs.size() * sizeof(Vec2) +
+           mesh.triangles.size() * sizeof(glm::uvec3);
+}
+
+std::uint64_t bytes(const Image& image) {
+    return image.pixels.size() * sizeof(Vec4);
+}
+
+}  // namespace
+
+void RenderScene::flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const {
+    struct Placement {
+        Affine to_world;
+        bool visible;
+    };
+    std::unordered_map<ObjectId, Placement> lists;  // Parents come before their children.
+    std::unordered_map<MaterialId, std::uint32_t> material_index{{MaterialId{}, 0}};
+    for (const MaterialEntry& entry : scene_->materials) {
+        material_index.emplace(entry.id, static_cast<std::uint32_t>(material_index.size()));
+    }
+    for (const Object& object : scene_->objects) {
+        Placement placement{object.transform.affine(), object.visible};
+        if (object.parent) {
+            const Placement& parent = lists.at(object.parent);
+            placement = {parent.to_world * placement.to_world, parent.visible && placement.visible};
+        }
+        if (std::holds_alternative<ObjectList>(object.shape)) lists.emplace(object.id, placement);
+        if (!placement.visible) continue;
+        if (const auto* gltf = std::get_if<Gltf>(&object.shape); gltf && gltf->geometry) {
+            for (const GltfPart& part : gltf->geometry->parts) {
+                const MaterialId own =
+                    part.material < gltf->materials.size() ? gltf->materials[part.material] : MaterialId{};
+                instances.push_back({part.mesh, placement.to_world * part.to_file});
+                objects.push_back({object.id, material_index.at(object.material ? object.material : own)});
+            }
+        } else if (auto shape = traced_shape(object.shape)) {
+            instances.push_back({*std::move(shape), placement.to_world});
+            objects.push_back({object.id, material_index.at(object.material)});
+        }
+    }
+}
+
+std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previous, std::shared_ptr<const Scene> scene,
+                                                       const SceneChanges& changes, BuildControl& control) {
+    auto next = previous ? std::make_shared<RenderScene>(*previous) : std::make_shared<RenderScene>();
+    next->scene_ = std::move(scene);
+    const bool materials = !previous || changes.materials || changes.emission;
+    const bool objects = !previous || changes.geometry || changes.assignment || changes.materials;
+    const bool trees = !previous || changes.geometry || changes.accel;
+    const bool lights = !previous || changes.geometry || changes.assignment || changes.emission || changes.environment;
+
+    if (materials) next->materials_ = std::make_shared<const PackedMaterials>(pack_all(*next->scene_));
+    if (objects || trees) {
+        std::vector<GeometryInstance> instances;
+        FlatObjects flat;
+        next->flatten(instances, flat);
+        next->objects_ = std::make_shared<const FlatObjects>(std::move(flat));
+        if (trees) {
+            next->accelerator_ = Accelerator::build(std::move(instances), next->scene_->render.accel,
+                                                    previous ? &previous->accelerator() : nullptr, control);
+            if (!next->accelerator_) return nullptr;
+        }
+    }
+    if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);
+    if (lights) {
+        std::vector<const Material*> of_instances;
+        for (const FlatObject& object : *next->objects_)
+            of_instances.push_back(&(*next->materials_)[object.material].material);
+        next->lights_ = std::make_shared<const LightTable>(next->accelerator_->instances(), of_instances,
+                                                           next->scene_->environment);
+    }
+    next->features_ = next->find_features();
+    return next;
+}
+
+Features RenderScene::find_features() const {
+    Features features{
+        .environment = !environment_.is_black(), .lights = !lights_->empty(), .lens = scene_->camera.lens_radius > 0};
+    std::vector<bool> used(materials_->size(), false);
+    for (const FlatObject& object : *objects_) used[object.material] = true;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        features.emitters |= (*materials_)[i].emissive;
+        features.smooth_surfaces |= (*materials_)[i].smooth;
+        features.textures |= (*materials_)[i].textured;
+    }
+    return features;
+}
+
+std::uint64_t RenderScene::memory_bytes() const {
+    std::uint64_t total = accelerator_->stats().memory_bytes + lights_->memory_bytes();
+    std::unordered_set<const void*> seen;
+    const auto add = [&](const auto& data) {
+        if (seen.insert(&data).second) total += bytes(data);
+    };
+    for (const GeometryInstance& instance : accelerator_->instances()) {
+        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) add(**mesh);
+    }
+    for (const PackedMaterial& packed : *materials_) for_each_texture(packed.material, add);
+    if (const Image* image = environment_.image()) add(*image);
+    return total;
+}
+
+}  // namespace rayuela

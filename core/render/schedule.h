@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace rayuela {
+
+/// What the choice of the next pass depends on. All times in seconds.
+struct ScheduleState {
+    int width = 1, height = 1;  ///< Of the film.
+    bool interactive = true;    ///< Coarse passes and publications while rendering.
+    bool paused = false;
+    int max_samples = 0;     ///< 0: no limit.
+    double max_seconds = 0;  ///< 0: no limit.
+
+    int samples = 0;              ///< In every pixel of the film.
+    int coarse_passes = 0;        ///< Since accumulation restarted.
+    int coarse_divisor = 1;       ///< Of those passes.
+    double render_seconds = 0;    ///< In passes since the restart.
+    double quiet_seconds = 0;     ///< Since the last edit.
+    double seconds_per_path = 0;  ///< Wall time of a camera path as last measured; 0 while unknown.
+    double publish_seconds = 0;   ///< Cost of a publication as last measured.
+    double since_publication = 0;
+    bool unpublished = false;  ///< The film has samples that no frame shows.
+    bool film_shown = false;   ///< A frame has shown the film since the restart.
+};
+
+struct Pass {
+    enum class Kind : std::uint8_t {
+        coarse,    ///< One sample a pixel more of a preview.
+        full,      ///< The film.
+        paused,    ///< Nothing, until resumed.
+        finished,  ///< Nothing: a limit is reached.
+    };
+    Kind kind = Kind::full;
+    int divisor = 1;             ///< Of the film's width and height.
+    int samples = 0;             ///< Full: that every pixel shall have at the end.
+    bool must_complete = false;  ///< Not to be cut short even by an edit: else a stream of edits shows nothing.
+    double stop_at = 0;          ///< Value of render_seconds that cuts the pass short; 0: never.
+
+    bool operator==(const Pass&) const = default;
+};
+
+/// What to render next. Pure: the session does as it says.
+/// After a restart previews come first, small enough for some 40 a second, for as long as edits keep coming; then
+/// the film. The first pass over the film always completes, so that no frame shows holes. Paused, it stops after that.
+Pass next_pass(const ScheduleState& state);
+
+/// Whether the film is worth publishing, after a pass over it: at once when it has become complete or rendering is about
+/// to stop, else 60 times a second falling to twice as the image calms down, and for no more than a tenth of the time.
+bool publish_now(const ScheduleState& state);
+
+}  // namespace rayuela
