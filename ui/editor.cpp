@@ -58,6 +58,7 @@ Editor::Editor(Preferences initial, int thread_count)
       autosave_time_(std::chrono::steady_clock::now()),
       session_({.threads = thread_count, .interactive = true}),
       session_threads_(thread_count) {
+    panels.show_quick_start = preferences.first_start && !preferences.folder.empty();
     show();
 }
 

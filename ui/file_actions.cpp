@@ -26,6 +26,19 @@ std::string stem(const Editor& editor) {
     return name.empty() ? "scene" : name;
 }
 
+void ask_for_scene_file(Editor& editor, std::function<void(Editor&)> then) {
+    editor.file_dialog.open({.title = "Save scene as",
+                             .action = "Save",
+                             .extensions = {".scene.json"},
+                             .name = stem(editor) + ".scene.json",
+                             .save = true,
+                             .chosen =
+                                 [&editor, then = std::move(then)](const fs::path& file) {
+                                     if (editor.save_as(file) && then) then(editor);
+                                 }},
+                            start_folder(editor));
+}
+
 }  // namespace
 
 void open_dialog(Editor& editor) {
@@ -39,21 +52,19 @@ void open_dialog(Editor& editor) {
 }
 
 void save_as_dialog(Editor& editor) {
-    editor.file_dialog.open({.title = "Save scene as",
-                             .action = "Save",
-                             .extensions = {".scene.json"},
-                             .name = stem(editor) + ".scene.json",
-                             .save = true,
-                             .chosen = [&editor](const fs::path& file) { editor.save_as(file); }},
-                            start_folder(editor));
+    ask_for_scene_file(editor, {});
+}
+
+void save_and_then(Editor& editor, std::function<void(Editor&)> then) {
+    if (editor.file().extension() != ".json") {
+        ask_for_scene_file(editor, std::move(then));
+    } else if (editor.save() && then) {
+        then(editor);
+    }
 }
 
 void save_or_ask(Editor& editor) {
-    if (editor.file().extension() == ".json") {
-        editor.save();
-    } else {
-        save_as_dialog(editor);
-    }
+    save_and_then(editor, {});
 }
 
 void import_dialog(Editor& editor) {

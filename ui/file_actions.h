@@ -8,8 +8,9 @@ namespace rayuela {
 
 void open_dialog(Editor& editor);
 void save_as_dialog(Editor& editor);
-/// Saves to the scene's own file, or asks for one where it has none.
+/// Saves to the scene's own file, or asks for one where it has none; once it is saved, `then` is done.
 void save_or_ask(Editor& editor);
+void save_and_then(Editor& editor, std::function<void(Editor&)> then);
 void import_dialog(Editor& editor);
 void save_image_dialog(Editor& editor);
 void object_file_dialog(Editor& editor, ObjectId id);

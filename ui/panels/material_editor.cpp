@@ -42,7 +42,9 @@ void draw_material(Editor& editor, const MaterialEntry& entry) {
     ImGui::PushID("material");
     field_label("Name", "Name of the material.");
     MaterialEntry changed = entry;
-    if (ImGui::InputText("##name", &changed.name) && !changed.name.empty()) {
+    const bool renamed = ImGui::InputText("##name", &changed.name);
+    // Names on the way to the wanted one may be empty or taken.
+    if (renamed && !changed.name.empty() && !editor.scene().find_material(changed.name)) {
         editor.edit(SetMaterial{changed}, "Rename material");
     }
     tooltip("Name of the material; unique in the scene.");

@@ -1,0 +1,180 @@
+#include "ui/panels/panels.h"
+#include "ui/theme.h"
+#include "ui/widgets.h"
+
+#include <fmt/format.h>
+#include <implot.h>
+
+#include <cmath>
+
+namespace rayuela {
+namespace {
+
+constexpr const char* kPhaseNames[] = {"Idle", "Building", "Rendering", "Paused", "Finished"};
+constexpr const char* kRejectionNames[] = {"not a number", "infinite", "negative"};
+
+ImVec4 to_imgui(const Vec4& color) {
+    return {color.x, color.y, color.z, color.w};
+}
+
+std::string with_unit(double value, const char* unit) {
+    constexpr const char* kPrefixes[] = {"", "k", "M", "G", "T"};
+    std::size_t prefix = 0;
+    for (; std::abs(value) >= 1000 && prefix + 1 < std::size(kPrefixes); ++prefix) value /= 1000;
+    return prefix == 0 && value == std::floor(value) ? fmt::format("{:.0f} {}", value, unit)
+                                                     : fmt::format("{:.2f} {}{}", value, kPrefixes[prefix], unit);
+}
+
+std::string grouped(std::uint64_t value) {
+    std::string digits = std::to_string(value);
+    for (auto i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3)
+        digits.insert(static_cast<std::size_t>(i), " ");
+    return digits;
+}
+
+std::string duration(double seconds) {
+    if (seconds < 1) return fmt::format("{:.1f} ms", seconds * 1000);
+    if (seconds < 100) return fmt::format("{:.2f} s", seconds);
+    const auto whole = static_cast<long>(seconds);
+    return whole < 3600 ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
+                        : fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+void row(const char* name, const std::string& value, const char* tip, const Vec4* color = nullptr) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", name);
+    tooltip(tip);
+    ImGui::TableNextColumn();
+    const ImVec4 text = color ? to_imgui(*color) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
+    ImGui::PushFont(mono_font(), 0);
+    const float width = ImGui::CalcTextSize(value.c_str()).x;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, ImGui::GetContentRegionAvail().x - width));
+    ImGui::TextColored(text, "%s", value.c_str());
+    ImGui::PopFont();
+    tooltip(tip);
+}
+
+bool begin_numbers(const char* id, float width) {
+    if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp, {width, 0})) return false;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.1f);
+    return true;
+}
+
+constexpr const char* kErrorTip =
+    "Estimated relative mean squared error of the image: the expected square of (pixel - true pixel) over the true "
+    "pixel's "
+    "square, averaged. It is measured between two independent halves of the samples, so it is an error against the "
+    "truth, not a "
+    "change between two frames. 1e-2 is noisy, 1e-4 looks clean; four times the samples give a quarter of it.";
+
+void draw_rendering(const RenderStatistics& s, const SessionStatus& status, float width) {
+    if (!begin_numbers("rendering", width)) return;
+    row("Phase", kPhaseNames[static_cast<std::size_t>(status.phase)], "What the renderer is doing.",
+        status.phase == SessionPhase::finished ? &theme::kGood : nullptr);
+    row("Samples a pixel", grouped(static_cast<std::uint64_t>(s.spp)), "Camera paths that every pixel has got.");
+    row("Time", duration(s.render_seconds), "Rendering since the last restart, pauses left out.");
+    row("Speed", with_unit(s.samples_per_second, "samples/s"), "Camera paths a second over the whole image.");
+    row("Rays", with_unit(s.rays_per_second, "rays/s"), "Closest-hit and shadow rays a second.");
+    row("Error (relMSE)", s.estimated_error > 0 ? fmt::format("{:.2e}", s.estimated_error) : "-", kErrorTip);
+    row("Noise", s.estimated_error > 0 ? fmt::format("{:.2f} %", 100 * std::sqrt(s.estimated_error)) : "-",
+        "Square root of the error: how far a pixel typically is from the truth.");
+    row("Paths", grouped(s.samples), "Camera paths since the last restart.");
+    row("Restarts", grouped(s.restarts), "How often accumulation has begun anew since the program started.");
+    row("Threads", std::to_string(s.threads), "Workers that trace rays.");
+    std::uint64_t rejected = 0;
+    for (const std::uint64_t count : s.rejected) rejected += count;
+    row("Rejected samples", grouped(rejected),
+        "Samples left out because their value made no sense. Zero is right; anything else is a defect.",
+        rejected > 0 ? &theme::kError : nullptr);
+    for (std::size_t i = 0; i < s.rejected.size(); ++i) {
+        if (s.rejected[i] > 0)
+            row(kRejectionNames[i], grouped(s.rejected[i]), "Samples rejected for this cause.", &theme::kError);
+    }
+    ImGui::EndTable();
+}
+
+void draw_structure(const RenderStatistics& s, const AccelSettings& settings, float width) {
+    if (!begin_numbers("structure", width)) return;
+    const AccelStats& a = s.accel;
+    const double per_primitive =
+        a.primitives > 0 ? static_cast<double>(a.references) / static_cast<double>(a.primitives) : 0;
+    const double per_leaf = a.leaves > 0 ? static_cast<double>(a.references) / static_cast<double>(a.leaves) : 0;
+    row("Structure",
+        settings.kind == AcceleratorKind::kd ? fmt::format("kd-tree, leaf {}", settings.leaf_size) : "list",
+        "How a ray finds what it hits.");
+    row("Build", duration(s.build_seconds),
+        "Time to derive all that the renderer needs from the last edit, trees included.");
+    row("Primitives", grouped(a.primitives), "Shapes and triangles; an instanced mesh counts once.");
+    row("Nodes", grouped(a.nodes), "Inner nodes and leaves of all trees.");
+    row("Leaves", grouped(a.leaves), "Leaves of all trees.");
+    row("Depth", std::to_string(a.depth), "Of the deepest leaf.");
+    row("References", grouped(a.references), "Primitives over all leaves: one that is cut by a plane lies in several.");
+    row("  a primitive", fmt::format("{:.2f}", per_primitive),
+        "How often a primitive lies in a leaf, on average: 1 means that none was cut.");
+    row("  a leaf", fmt::format("{:.2f}", per_leaf), "Primitives that a ray meets in a leaf, on average.");
+    row("Trees' memory", with_unit(static_cast<double>(a.memory_bytes), "B"), "Of the acceleration structure.");
+    row("Memory", with_unit(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
+    ImGui::EndTable();
+}
+
+void draw_plot(Editor& editor, float width) {
+    const ConvergenceHistory& history = editor.convergence();
+    ImGui::BeginGroup();
+    if (history.samples.size() < 2) {
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+        hint("The error of the image appears here as it falls, once a few samples are there.");
+        ImGui::PopTextWrapPos();
+        ImGui::EndGroup();
+        return;
+    }
+    bool& over_time = editor.panels.plot_over_time;
+    if (ImGui::RadioButton("over samples", !over_time)) over_time = false;
+    tooltip("Plots the error against samples a pixel.");
+    ImGui::SameLine();
+    if (ImGui::RadioButton("over time", over_time)) over_time = true;
+    tooltip("Plots the error against seconds of rendering.");
+    const float height = std::max(6 * ImGui::GetFontSize(), ImGui::GetContentRegionAvail().y - 2);
+    const std::vector<double>& xs = over_time ? history.seconds : history.samples;
+    if (ImPlot::BeginPlot("##convergence", {width, height},
+                          ImPlotFlags_NoLegend | ImPlotFlags_NoMenus | ImPlotFlags_NoMouseText)) {
+        const ImPlotAxisFlags flags = ImPlotAxisFlags_AutoFit | ImPlotAxisFlags_NoHighlight;
+        ImPlot::SetupAxes(over_time ? "seconds" : "samples a pixel", "error (relMSE)", flags, flags);
+        ImPlot::SetupAxisScale(ImAxis_X1, ImPlotScale_Log10);
+        ImPlot::SetupAxisScale(ImAxis_Y1, ImPlotScale_Log10);
+        const int count = static_cast<int>(xs.size());
+        // The slope that independent samples have, through the newest point.
+        const double guide_x[] = {xs.front(), xs.back()};
+        const double guide_y[] = {history.error.back() * xs.back() / xs.front(), history.error.back()};
+        ImPlot::PlotLine("1/N", guide_x, guide_y, 2, {ImPlotProp_LineColor, ImVec4(0.5f, 0.5f, 0.5f, 0.5f)});
+        ImPlot::PlotLine("error", xs.data(), history.error.data(), count,
+                         {ImPlotProp_LineColor, to_imgui(theme::kAccent), ImPlotProp_LineWeight, 2.0f});
+        if (ImPlot::IsPlotHovered())
+            ImGui::SetTooltip(
+                "%s", "The grey line is the slope of independent samples: half the error for twice the samples.");
+        ImPlot::EndPlot();
+    }
+    ImGui::EndGroup();
+}
+
+}  // namespace
+
+void draw_statistics_panel(Editor& editor) {
+    if (!editor.frame()) {
+        hint("Numbers appear here with the first image.");
+        return;
+    }
+    const RenderStatistics& statistics = editor.frame()->statistics;
+    const float available = ImGui::GetContentRegionAvail().x, spacing = ImGui::GetStyle().ItemSpacing.x;
+    // Side by side where there is room, as at the bottom of the window; else one below the other.
+    const bool wide = available > 52 * ImGui::GetFontSize();
+    const float column = wide ? (available - 2 * spacing) * 0.3f : available;
+    draw_rendering(statistics, editor.session().status(), column);
+    if (wide) ImGui::SameLine();
+    draw_structure(statistics, editor.scene().render.accel, column);
+    if (wide) ImGui::SameLine();
+    draw_plot(editor, wide ? ImGui::GetContentRegionAvail().x : available);
+}
+
+}  // namespace rayuela
