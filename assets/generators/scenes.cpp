@@ -136,7 +136,7 @@ std::string weekend() {
 /// The set-up of Veach's thesis (1997, figure 9.2): neither sampling the lamps nor sampling the plates is right everywhere.
 std::string veach() {
     const Vec3d eye(0, 3.4, 11), lamps(0, 3.6, -3.2);
-    const std::array<double, 4> radii = {0.05, 0.16, 0.42, 0.95}, columns = {-4.1, -1.8, 0.9, 3.6};
+    const std::array<double, 4> radii = {0.05, 0.15, 0.38, 0.82}, columns = {-4.1, -1.8, 0.9, 3.6};
     const std::array<Vec3d, 4> colors = {{{1, 0.35, 0.2}, {1, 0.8, 0.3}, {0.35, 0.9, 0.6}, {0.35, 0.55, 1}}};
     const std::array<double, 4> roughness = {0.06, 0.16, 0.28, 0.42};
     std::vector<std::string> materials = {diffuse("room", {0.42, 0.41, 0.4})}, objects;
@@ -147,16 +147,16 @@ std::string veach() {
     for (std::size_t i = 0; i < 4; ++i) {
         materials.push_back(metal(fmt::format("plate {}", i + 1), {0.72, 0.72, 0.74}, roughness[i]));
         const double step = static_cast<double>(i);
-        const Vec3d center(0, 1.6 - 0.42 * step, -2.2 + 1.75 * step);
+        const Vec3d center(0, 1.62 - 0.42 * step, -2.2 + 1.45 * step);
         // The plate's normal halves the angle between eye and lamps, so that each plate mirrors the whole row.
         const Vec3d normal = glm::normalize(glm::normalize(eye - center) + glm::normalize(lamps - center));
         objects.push_back(fmt::format(
-            R"({{"type": "box", "name": "plate {0}", "min": [-4.4, -0.08, -0.62], "max": [4.4, 0, 0.62], "material": "plate {0}",)"
+            R"({{"type": "box", "name": "plate {0}", "min": [-3.9, -0.06, -0.7], "max": [3.9, 0, 0.7], "material": "plate {0}",)"
             R"( "transform": {{"translate": {1}, "rotate": {{"axis": [1, 0, 0], "degrees": {2}}}}}}})",
             i + 1, vector(center), number(glm::degrees(std::atan2(normal.z, normal.y)))));
     }
     for (std::size_t i = 0; i < 4; ++i) {
-        materials.push_back(emitter(fmt::format("lamp {}", i + 1), colors[i] * (2.2 / (radii[i] * radii[i]))));
+        materials.push_back(emitter(fmt::format("lamp {}", i + 1), colors[i] * (1.3 / (radii[i] * radii[i]))));
         objects.push_back(sphere_object({columns[i], lamps.y, lamps.z}, radii[i], fmt::format("lamp {}", i + 1),
                                         fmt::format("lamp {}", i + 1)));
     }
@@ -165,7 +165,7 @@ std::string veach() {
 {{
   "rayuela": 1,
   "film": {{"width": 900, "height": 600}},
-  "camera": {{"position": {}, "target": [0, 1.55, 0], "vfov": 34, "focus_distance": 11}},
+  "camera": {{"position": {}, "target": [0, 1.95, 0], "vfov": 31, "focus_distance": 11}},
   "materials": {{
 {}
   }},
