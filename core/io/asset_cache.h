@@ -17,7 +17,8 @@ class AssetCache {
 public:
     MeshResult mesh(const std::filesystem::path& path, Problems* warnings = nullptr);
     /// "folder/helmet.glb#2" names image 2 of a glTF file.
-    Result<std::shared_ptr<const Image>> image(const std::filesystem::path& path, ColorDecoding decoding);
+    Result<std::shared_ptr<const Image>> image(const std::filesystem::path& path, ColorDecoding decoding,
+                                               Problems* warnings = nullptr);
     Result<std::shared_ptr<const GltfFile>> gltf(const std::filesystem::path& path);
     /// Forgets what nobody else holds any more.
     void release_unused();

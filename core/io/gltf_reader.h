@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/io/image_io.h"
 #include "core/materials/material.h"
 #include "core/math/result.h"
 #include "core/shapes/gltf.h"
@@ -39,6 +40,10 @@ struct GltfFile {
 Result<std::shared_ptr<const GltfFile>> read_gltf(const std::filesystem::path& path);
 /// The same from memory; buffers and images beside `path` are still read from there.
 Result<std::shared_ptr<const GltfFile>> parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path);
+
+/// One image of a file, whether a material uses it or not.
+Result<std::shared_ptr<const Image>> read_gltf_image(const std::filesystem::path& path, int index,
+                                                     ColorDecoding decoding);
 
 /// Whether the path ends in .gltf or .glb.
 bool is_gltf_file(const std::filesystem::path& path);
