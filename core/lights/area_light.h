@@ -11,10 +11,10 @@ namespace rayuela {
 
 /// Emission that varies over a light.
 struct EmissionTexture {
-    Material material;
-    Mat3 sphere_to_local{1};  ///< World direction from a sphere's centre -> its own space.
-    Vec2 uv_origin{0}, uv_u{1, 0},
-        uv_v{0, 1};  ///< Texture coordinates at the origin and along the edges of the others.
+    std::shared_ptr<const Material> material;
+    Mat3 sphere_to_local{1};  ///< World direction from a sphere's centre -> its own space, but for its length.
+    /// Texture coordinates at the origin of the other kinds and along their edges.
+    Vec2 uv_origin{0}, uv_u{1, 0}, uv_v{0, 1};
 };
 
 /// A piece of an emissive surface, in world space.
@@ -23,22 +23,33 @@ struct AreaLight {
 
     Kind kind = Kind::triangle;
     bool two_sided = false;
-    Vec3 origin{0};     ///< Centre of a sphere, else a corner.
-    Vec3 u{0}, v{0};    ///< Edges from the corner.
-    Vec3 normal{0};     ///< Unit, of the front; unused for a sphere.
-    float size = 0;     ///< Radius of a sphere, else area.
-    Color radiance{0};  ///< Where it does not vary; else its mean over the surface.
+    Vec3 origin{0};             ///< Centre of a sphere, else a corner.
+    Vec3 edge_u{0}, edge_v{0};  ///< Edges from the corner.
+    Vec3 normal{0};             ///< Unit, of the front; unused for a sphere.
+    float size = 0;             ///< Radius of a sphere, else area.
+    Color radiance{0};          ///< Where it does not vary; else its mean over the surface.
     std::shared_ptr<const EmissionTexture> texture;
 
     float area() const;
     /// Emitted flux, mean over the channels.
     float power() const;
+    /// Radiance at parametric `position` (along the edges), or where the unit normal of a sphere is this.
+    Color radiance_at(const Vec2& position) const;
+    Color radiance_at(const Vec3& sphere_normal) const;
 
-    /// A point of the light that shines towards `p`, and its density per solid angle at p.
+    /// A point of the light that shines towards `p`, and its density per solid angle at p: spheres by the cone they fill
+    /// (from inside by area), all others by area.
     std::optional<LightSample> sample(const Vec3& p, const Vec2& u) const;
     /// Density with which `sample` draws the unit direction `wi`, which meets this light at `hit_point` with unit front
     /// normal `ng`.
     float pdf(const Vec3& p, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const;
+
+private:
+    std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;
+    std::optional<LightSample> sample_flat(const Vec3& p, const Vec2& u) const;
+    /// `solid_angle_pdf` 0: the point was drawn by area.
+    std::optional<LightSample> finish(const Vec3& p, const Vec3& point, const Vec3& n, float solid_angle_pdf,
+                                      const Color& radiance) const;
 };
 
 }  // namespace rayuela

@@ -22,7 +22,12 @@ public:
     std::uint64_t memory_bytes() const { return cells_.memory_bytes(); }
 
 private:
-    float cell_solid_angle(int row) const;
+    /// Of a cell along one axis of the image, in [0, 1].
+    struct Extent {
+        double begin, end;
+    };
+    Extent extent(std::uint32_t cell, int pixels) const;
+    float solid_angle(std::uint32_t column, std::uint32_t row) const;
 
     EnvironmentLight light_;
     Distribution2D cells_;

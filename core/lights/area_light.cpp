@@ -1,0 +1,122 @@
+#include "core/lights/area_light.h"
+
+#include "core/materials/bsdf.h"
+#include "core/math/float_error.h"
+#include "core/math/frame.h"
+#include "core/math/sampling.h"
+
+#include <cmath>
+
+namespace rayuela {
+namespace {
+
+/// A sphere as seen from a point outside.
+struct Cone {
+    Vec3 axis;
+    float distance;  ///< To the centre.
+    float one_minus_cos;
+};
+
+/// In double: close to the sphere both differences cancel.
+std::optional<Cone> cone_of(const AreaLight& sphere, const Vec3& p) {
+    const Vec3d to_centre = Vec3d(sphere.origin) - Vec3d(p);
+    const double d2 = glm::dot(to_centre, to_centre), r = sphere.size;
+    const double sin2 = r * r / d2;
+    if (!(sin2 < 1)) return std::nullopt;
+    const double d = std::sqrt(d2);
+    return Cone{Vec3(to_centre / d), static_cast<float>(d), static_cast<float>(sin2 / (1 + std::sqrt(1 - sin2)))};
+}
+
+/// Density per solid angle at p of a point drawn evenly over `area`, seen along `wi` (unit).
+float area_pdf(const Vec3& p, const Vec3& point, const Vec3& wi, const Vec3& normal, float area) {
+    const Vec3 d = point - p;
+    return glm::dot(d, d) / (area * std::abs(glm::dot(normal, wi)));
+}
+
+Vec2 sphere_uv(const Vec3& own) {
+    const float longitude = std::atan2(-own.z, own.x) * (0.5f * kInvPi);
+    return {longitude < 0 ? longitude + 1 : longitude, std::atan2(std::hypot(own.x, own.z), own.y) * kInvPi};
+}
+
+}  // namespace
+
+float AreaLight::area() const {
+    return kind == Kind::sphere ? 4 * kPi * size * size : size;
+}
+
+float AreaLight::power() const {
+    const float mean = (radiance.x + radiance.y + radiance.z) / 3;
+    return mean * kPi * area() * (two_sided ? 2.0f : 1.0f);
+}
+
+Color AreaLight::radiance_at(const Vec2& position) const {
+    if (!texture) return radiance;
+    return emitted(*texture->material, texture->uv_origin + position.x * texture->uv_u + position.y * texture->uv_v,
+                   true);
+}
+
+Color AreaLight::radiance_at(const Vec3& sphere_normal) const {
+    if (!texture) return radiance;
+    return emitted(*texture->material, sphere_uv(glm::normalize(texture->sphere_to_local * sphere_normal)), true);
+}
+
+std::optional<LightSample> AreaLight::sample(const Vec3& p, const Vec2& u) const {
+    return kind == Kind::sphere ? sample_sphere(p, u) : sample_flat(p, u);
+}
+
+std::optional<LightSample> AreaLight::sample_sphere(const Vec3& p, const Vec2& u) const {
+    const std::optional<Cone> cone = cone_of(*this, p);
+    if (!cone && !two_sided) return std::nullopt;
+    Vec3 n;
+    if (cone) {
+        // The near point where the direction meets the sphere, by its angle from the axis at the centre: no difference of
+        // large numbers. sin(alpha) from the law of sines, PBRT 4th ed., 6.2.4.
+        const Vec3 local = sample_uniform_cone(u, cone->one_minus_cos);
+        const float sin2_theta = local.x * local.x + local.y * local.y;
+        const float ratio = cone->distance / size;
+        const float cos_alpha =
+            sin2_theta * ratio + local.z * std::sqrt(std::max(0.0f, 1 - sin2_theta * ratio * ratio));
+        const float sin_alpha = std::sqrt(std::max(0.0f, 1 - cos_alpha * cos_alpha));
+        const float length = std::sqrt(sin2_theta);
+        const Vec2 around = length > 0 ? Vec2(local) / length : Vec2(1, 0);
+        n = Frame(-cone->axis).to_world({sin_alpha * around.x, sin_alpha * around.y, cos_alpha});
+    } else {
+        n = sample_uniform_sphere(u);
+    }
+    return finish(p, origin + size * n, n, cone ? uniform_cone_pdf(cone->one_minus_cos) : 0.0f, radiance_at(n));
+}
+
+std::optional<LightSample> AreaLight::sample_flat(const Vec3& p, const Vec2& u) const {
+    const Vec2 position = kind == Kind::triangle ? sample_uniform_triangle(u) : u;
+    return finish(p, origin + position.x * edge_u + position.y * edge_v, normal, 0, radiance_at(position));
+}
+
+std::optional<LightSample> AreaLight::finish(const Vec3& p, const Vec3& point, const Vec3& n, float solid_angle_pdf,
+                                             const Color& emitted_radiance) const {
+    const Vec3 d = point - p;
+    const float distance = glm::length(d);
+    LightSample s;
+    s.wi = d / distance;
+    const float cosine = -glm::dot(n, s.wi);
+    if (!(distance > 0) || cosine == 0 || (cosine < 0 && !two_sided) || is_black(emitted_radiance)) return std::nullopt;
+    s.distance = distance;
+    s.radiance = emitted_radiance;
+    s.pdf = solid_angle_pdf > 0 ? solid_angle_pdf : area_pdf(p, point, s.wi, n, area());
+    if (!(s.pdf > 0 && s.pdf < kInfinity)) return std::nullopt;
+    // Rounding of the point itself, of the shadow ray's direction and of its intersection with the surface.
+    const Vec3 magnitude =
+        glm::abs(p) + glm::abs(origin) + (kind == Kind::sphere ? Vec3(size) : glm::abs(edge_u) + glm::abs(edge_v));
+    s.target = offset_ray_origin(point, gamma(6) * magnitude, n, -s.wi);
+    return s;
+}
+
+float AreaLight::pdf(const Vec3& p, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const {
+    if (glm::dot(ng, wi) >= 0 && !two_sided) return 0;
+    if (kind == Kind::sphere) {
+        if (const std::optional<Cone> cone = cone_of(*this, p)) return uniform_cone_pdf(cone->one_minus_cos);
+    }
+    const float density = area_pdf(p, hit_point, wi, ng, area());
+    return density < kInfinity ? density : 0.0f;
+}
+
+}  // namespace rayuela
