@@ -86,6 +86,22 @@ std::string_view json_part(std::string_view bytes) {
     return bytes.substr(20, length);
 }
 
+bool is_supported(std::string_view extension) {
+    return extension != kLights && std::ranges::find(kKnownExtensions, extension) != kKnownExtensions.end();
+}
+
+std::vector<std::string> unknown_required_extensions(std::string_view text, const std::string& name) {
+    std::vector<std::string> unknown;
+    const Result<Json> json = parse_json(text, name);
+    const Json* required = json ? json->find("extensionsRequired") : nullptr;
+    const auto* list = required ? required->get<Json::Array>() : nullptr;
+    for (std::size_t i = 0; list && i < list->size(); ++i) {
+        const auto* extension = (*list)[i].get<std::string>();
+        if (extension && !is_supported(*extension)) unknown.push_back(*extension);
+    }
+    return unknown;
+}
+
 Result<tinygltf::Model> parse(std::string_view bytes, const fs::path& path, Problems& warnings) {
     const std::string name = path.string();
     if (bytes.empty()) return fail(name, "", "is empty");
@@ -113,7 +129,12 @@ Result<tinygltf::Model> parse(std::string_view bytes, const fs::path& path, Prob
     for (Problem& problem : folder.refused) problem.file = name;
     if (!ok) {
         Problems problems = std::move(folder.refused);
-        problems.push_back({name, "", error.empty() ? "is no valid glTF file" : first_line(error)});
+        // Without what it requires a file may well look broken: that is the cause to tell.
+        for (const std::string& extension : unknown_required_extensions(json_part(bytes), name)) {
+            problems.push_back({name, "extensionsRequired", extension + " is required and not supported"});
+        }
+        if (problems.empty())
+            problems.push_back({name, "", error.empty() ? "is no valid glTF file" : first_line(error)});
         return tl::unexpected(std::move(problems));
     }
     warnings = std::move(folder.refused);
@@ -128,7 +149,7 @@ Problems check_extensions(const tinygltf::Model& model, Context& context) {
         problems.push_back({context.path.string(), "asset.version", "must be 2.x, is '" + model.asset.version + "'"});
     }
     for (const std::string& name : model.extensionsRequired) {
-        if (std::ranges::find(kKnownExtensions, name) != kKnownExtensions.end() && name != kLights) continue;
+        if (is_supported(name)) continue;
         problems.push_back({context.path.string(), "extensionsRequired", name + " is required and not supported"});
     }
     for (const std::string& name : model.extensionsUsed) {

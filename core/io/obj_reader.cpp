@@ -42,7 +42,10 @@ protected:
         char* const first = text_.data() + next_;
         setg(first, first, text_.data() + end);
         const std::string_view line(first, end - next_);
-        std::fill(first + std::min(line.find('#'), line.size()), first + line.find_last_not_of("\r\n") + 1, ' ');
+        if (const std::size_t comment = line.find('#'); comment != std::string_view::npos) {
+            const std::size_t comment_end = line.find_last_not_of("\r\n") + 1;
+            std::fill(first + comment, first + comment_end, ' ');
+        }
         next_ = end;
         ++line_;
         check(line);
