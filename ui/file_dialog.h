@@ -11,13 +11,13 @@ namespace rayuela {
 class FileDialog {
 public:
     struct Request {
-        std::string title;            ///< "Open scene".
+        std::string title = {};       ///< "Open scene".
         std::string action = "Open";  ///< The button's text.
-        std::vector<std::string>
-            extensions;     ///< Lower case with the dot, ".scene.json"; the first is added to a typed name.
-        std::string name;   ///< Proposed file name.
-        bool save = false;  ///< A new name may be typed; an existing file asks before it is overwritten.
-        std::function<void(const std::filesystem::path&)> chosen;
+        /// Lower case with the dot, ".scene.json"; the first is added to a typed name.
+        std::vector<std::string> extensions = {};
+        std::string name = {};  ///< Proposed file name.
+        bool save = false;      ///< A new name may be typed; an existing file asks before it is overwritten.
+        std::function<void(const std::filesystem::path&)> chosen = {};
     };
 
     /// Starts in `folder`, or where the last one was left if that is empty.
