@@ -194,9 +194,7 @@ void Editor::finish(Load& load) {
 
 void Editor::open(const fs::path& file) {
     for (const auto& load : loads_) load->superseded = true;
-    std::error_code error;
-    const fs::path absolute = fs::absolute(file, error);
-    load("Opening " + file.filename().string(), error ? file : absolute.lexically_normal(),
+    load("Opening " + file.filename().string(), file,
          [file, cache = cache_]() -> Result<Loaded> {
              auto loaded = read_scene(file, cache.get());
              if (!loaded) return tl::unexpected(loaded.error());
@@ -299,9 +297,7 @@ bool Editor::save_as(const fs::path& file) {
         log.add(LogLevel::error, written.error());
         return false;
     }
-    std::error_code error;
-    const fs::path absolute = fs::absolute(file, error);
-    file_ = error ? file : absolute.lexically_normal();
+    file_ = file;
     saved_ = history_.current();
     remember_file(preferences, file_);
     save_preferences(preferences);
