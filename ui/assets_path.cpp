@@ -22,7 +22,7 @@ std::string first_comment(const fs::path& file) {
 
 }  // namespace
 
-fs::path assets_path() {
+fs::path assets_folder() {
     std::error_code error;
     std::vector<fs::path> candidates;
     if (const char* folder = std::getenv("RAYUELA_ASSETS")) candidates.emplace_back(folder);
@@ -40,7 +40,7 @@ std::vector<Example> example_scenes() {
     constexpr std::string_view kSuffix = ".scene.json";
     std::vector<Example> examples;
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(assets_path() / "scenes", error)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(assets_folder() / "scenes", error)) {
         const std::string name = entry.path().filename().string();
         if (!name.ends_with(kSuffix)) continue;
         examples.push_back({entry.path(), name.substr(0, name.size() - kSuffix.size()), first_comment(entry.path())});

@@ -8,7 +8,7 @@ namespace rayuela {
 
 /// The folder assets/: $RAYUELA_ASSETS, else <program>/../share/rayuela, else the source tree that was compiled.
 /// Empty where none exists.
-std::filesystem::path assets_path();
+std::filesystem::path assets_folder();
 
 struct Example {
     std::filesystem::path file;

@@ -194,13 +194,12 @@ void Editor::finish(Load& load) {
 
 void Editor::open(const fs::path& file) {
     for (const auto& load : loads_) load->superseded = true;
-    load("Opening " + file.filename().string(), file,
-         [file, cache = cache_]() -> Result<Loaded> {
-             auto loaded = read_scene(file, cache.get());
-             if (!loaded) return tl::unexpected(loaded.error());
-             return Loaded{[scene = std::move(loaded->scene)](const Scene&) -> Result<Scene> { return scene; },
-                           std::move(loaded->warnings)};
-         });
+    load("Opening " + file.filename().string(), file, [file, cache = cache_]() -> Result<Loaded> {
+        auto loaded = read_scene(file, cache.get());
+        if (!loaded) return tl::unexpected(loaded.error());
+        return Loaded{[scene = std::move(loaded->scene)](const Scene&) -> Result<Scene> { return scene; },
+                      std::move(loaded->warnings)};
+    });
 }
 
 void Editor::import(const fs::path& file) {

@@ -17,7 +17,7 @@ fs::path start_folder(const Editor& editor) {
     if (!editor.file().empty()) return editor.file().parent_path();
     if (!editor.preferences.recent_files.empty())
         return fs::path(editor.preferences.recent_files.front()).parent_path();
-    return assets_path() / "scenes";
+    return assets_folder() / "scenes";
 }
 
 std::string stem(const Editor& editor) {
@@ -117,7 +117,7 @@ void draw_file_dialog(Editor& editor) {
     if (!editor.file_dialog.is_open()) return;
     std::vector<fs::path> places;
     if (const char* home = std::getenv("HOME")) places.emplace_back(home);
-    if (const fs::path assets = assets_path(); !assets.empty()) places.push_back(assets / "scenes");
+    if (const fs::path assets = assets_folder(); !assets.empty()) places.push_back(assets / "scenes");
     for (const std::string& file : editor.preferences.recent_files) {
         const fs::path folder = fs::path(file).parent_path();
         if (std::ranges::find(places, folder) == places.end()) places.push_back(folder);
