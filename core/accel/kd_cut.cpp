@@ -163,7 +163,8 @@ std::optional<KdCut> find_median_cut(std::span<const KdReference> references, co
         for (const KdReference& reference : references) {
             if (reference.box.lo[axis] < cut.plane && reference.box.hi[axis] > cut.plane) ++on_both;
         }
-        if (on_both == references.size()) continue;
+        const bool inside = cut.plane > cell.lo[axis] && cut.plane < cell.hi[axis];
+        if (!inside || on_both == references.size()) continue;
         KdCut result = cut;
         result.duplicates = on_both;
         return result;

@@ -1,0 +1,188 @@
+#include "core/accel/surface_point.h"
+
+#include "core/accel/traced_object.h"
+#include "core/math/float_error.h"
+#include "tests/support/accel_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+namespace rayuela::test {
+namespace {
+
+SurfacePoint surface(const std::vector<GeometryInstance>& instances, const Ray& ray) {
+    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const Hit hit = intersect(*list, ray);
+    EXPECT_TRUE(hit.valid());
+    return surface_point(instances, ray, hit);
+}
+
+void expect_near(const Vec3& actual, const Vec3& expected, float tolerance = 1e-6f) {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(actual[axis], expected[axis], tolerance) << "axis " << axis;
+}
+
+const Ray kDown{.origin = Vec3(0.25f, 5, 0.5f), .direction = Vec3(0, -1, 0)};
+
+TEST(SurfacePoint, FrontsAreWhereTheShapesSay) {
+    expect_near(surface({{Sphere{}, {}}}, kDown).ng, glm::normalize(Vec3(0.25f, std::sqrt(1 - 0.3125f), 0.5f)));
+    expect_near(surface({{Box{}, {}}}, {.origin = Vec3(0.1f, 5, 0.2f), .direction = Vec3(0, -1, 0)}).ng, Vec3(0, 1, 0));
+    expect_near(surface({{Plane{Vec3(0), Vec3(0, 3, 0)}, {}}}, kDown).ng, Vec3(0, 1, 0));
+    expect_near(surface({{Plane{Vec3(0), Vec3(0, -3, 0)}, {}}}, kDown).ng, Vec3(0, -1, 0));
+    const Quad floor{Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)};
+    expect_near(surface({{floor, {}}}, kDown).ng, Vec3(0, 1, 0));
+    const Triangle triangle{{Vec3(-1, 0, 2), Vec3(2, 0, 2), Vec3(0, 0, -2)}};
+    expect_near(surface({{triangle, {}}}, kDown).ng, Vec3(0, 1, 0));
+    const MeshPtr mesh = make_mesh({triangle.vertices.begin(), triangle.vertices.end()}, {{0, 1, 2}});
+    expect_near(surface({{mesh, {}}}, kDown).ng, Vec3(0, 1, 0));
+}
+
+TEST(SurfacePoint, MirroringKeepsTheFrontOnTheObject) {
+    Mat3 mirror(1);
+    mirror[0][0] = -1;
+    const Affine flip{mirror, Vec3(0)};
+    const Triangle triangle{{Vec3(-2, 0, 2), Vec3(2, 0, 2), Vec3(0, 0, -2)}};
+    const MeshPtr mesh = make_mesh({triangle.vertices.begin(), triangle.vertices.end()}, {{0, 1, 2}});
+    const Quad floor{Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)};
+    for (const TracedShape& shape :
+         {TracedShape(triangle), TracedShape(floor), TracedShape(mesh), TracedShape(Sphere{}),
+          TracedShape(Box{Vec3(-1), Vec3(1)}), TracedShape(Plane{})}) {
+        EXPECT_GT(surface({{shape, flip}}, kDown).ng.y, 0.5f) << "shape " << shape.index();
+    }
+}
+
+TEST(SurfacePoint, NormalsFollowTheInverseTranspose) {
+    Mat3 scale(1);
+    scale[0][0] = 4;
+    const SurfacePoint ellipsoid =
+        surface({{Sphere{}, {scale, Vec3(0)}}}, {.origin = Vec3(2, 5, 0), .direction = Vec3(0, -1, 0)});
+    // Gradient of (x / 4)^2 + y^2 + z^2 at x = 2.
+    expect_near(ellipsoid.p, Vec3(2, std::sqrt(0.75f), 0));
+    expect_near(ellipsoid.ng, glm::normalize(Vec3(2.0f / 16, std::sqrt(0.75f), 0)));
+    const SurfacePoint slope = surface({{Plane{Vec3(0), Vec3(1, 1, 0)}, {scale, Vec3(0)}}}, kDown);
+    expect_near(slope.ng, glm::normalize(Vec3(0.25f, 1, 0)));
+}
+
+TEST(SurfacePoint, MeshAttributesAreInterpolated) {
+    auto mesh = std::make_shared<TriangleMesh>();
+    mesh->positions = {Vec3(0, 0, 0), Vec3(0, 0, 4), Vec3(4, 0, 0)};
+    mesh->normals = {Vec3(0, 1, 0), glm::normalize(Vec3(0, 1, 1)), glm::normalize(Vec3(1, 1, 0))};
+    mesh->uvs = {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
+    mesh->triangles = {{0, 1, 2}};
+    const SurfacePoint point = surface({{MeshPtr(mesh), {}}}, {.origin = Vec3(1, 3, 2), .direction = Vec3(0, -1, 0)});
+    expect_near(point.p, Vec3(1, 0, 2));
+    expect_near(point.ng, Vec3(0, 1, 0));
+    const Vec3 expected = 0.25f * mesh->normals[0] + 0.5f * mesh->normals[1] + 0.25f * mesh->normals[2];
+    expect_near(point.ns, glm::normalize(expected));
+    EXPECT_NEAR(point.uv.x, 0.5f, 1e-6f);
+    EXPECT_NEAR(point.uv.y, 0.25f, 1e-6f);
+}
+
+TEST(SurfacePoint, SphereUvIsLongitudeAndPolarAngle) {
+    const auto uv = [](const Vec3& from, const Affine& to_world = {}) {
+        return surface({{Sphere{}, to_world}}, {.origin = 5.0f * from, .direction = -from}).uv;
+    };
+    EXPECT_NEAR(uv(Vec3(1, 0, 0)).x, 0, 1e-6f);
+    EXPECT_NEAR(uv(Vec3(1, 0, 0)).y, 0.5f, 1e-6f);
+    EXPECT_NEAR(uv(Vec3(0, 0, -1)).x, 0.25f, 1e-6f);
+    EXPECT_NEAR(uv(Vec3(0, 0, 1)).x, 0.75f, 1e-6f);
+    EXPECT_NEAR(uv(Vec3(0, 1, 0)).y, 0, 1e-6f);
+    // Rotated by 90 degrees about y, +x shows what +z showed.
+    const Affine turned{Mat3(Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(1, 0, 0)), Vec3(0)};
+    EXPECT_NEAR(uv(Vec3(1, 0, 0), turned).x, 0.75f, 1e-6f);
+}
+
+TEST(SurfacePoint, BoxPointLiesOnItsFaceBitForBit) {
+    Random random(1);
+    for (int i = 0; i < 20000; ++i) {
+        Box box{random.in_cube(1000)};
+        box.max = box.min + glm::abs(random.in_cube(1000));
+        const std::vector<GeometryInstance> instances{{box, {}}};
+        Ray ray{.origin = random.in_cube(3000)};
+        ray.direction = 0.5f * (box.min + box.max) - ray.origin;
+        const TracedObject object(instances[0]);
+        ShapeHit hit;
+        ASSERT_TRUE(intersect_shape(object, TracedRay{RayD(ray)}, {ray.t_min, ray.t_max}, hit));
+        const SurfacePoint point = surface_point(instances, ray, {hit.t, 0, 0, 0, hit.primitive});
+        const int axis = static_cast<int>(hit.primitive / 2);
+        const float face = hit.primitive % 2 ? box.max[axis] : box.min[axis];
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(point.p[axis]), std::bit_cast<std::uint32_t>(face));
+        ASSERT_TRUE(Bounds3({box.min, box.max}).contains(point.p));
+    }
+}
+
+/// Any shape, anywhere up to 1e8, under any transform.
+std::vector<GeometryInstance> random_object(Random& random) {
+    const float scale = std::exp(random.uniform(std::log(1e-4f), std::log(1e4f)));
+    const float away = std::exp(random.uniform(std::log(1e-2f), std::log(1e4f)));
+    auto instances = make_scene(random.bits(), 1, 8);
+    instances[0].to_world = Affine{Mat3(scale), random.in_cube(scale * away)} * instances[0].to_world;
+    return instances;
+}
+
+bool is_flat(const TracedShape& shape) {
+    return !std::holds_alternative<Sphere>(shape) && !std::holds_alternative<Box>(shape);
+}
+
+/// A ray that leaves a surface point does not meet the same surface again: pbrt's Reintersect test, for all shapes.
+TEST(SurfacePoint, LeavingRaysDoNotMeetTheirOwnSurface) {
+    Random random(2);
+    int tested = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const auto instances = random_object(random);
+        const TracedObject object(instances[0]);
+        Ray ray{.origin = instances[0].to_world.point(random.in_cube(6))};
+        ray.direction =
+            special_point(instances, random) - ray.origin + 1e-3f * (special_point(instances, random) - ray.origin);
+        const auto list = build(instances, {.kind = AcceleratorKind::list});
+        const Hit hit = intersect(*list, ray);
+        if (!hit.valid()) continue;
+        ++tested;
+        const SurfacePoint point = surface_point(instances, ray, hit);
+        ASSERT_TRUE(point.p_error.x > 0 && point.p_error.y > 0 && point.p_error.z > 0);
+        ASSERT_NEAR(glm::length(point.ng), 1, 1e-6f);
+        for (const float side : {1.0f, -1.0f}) {
+            Vec3 w = random.direction();
+            if (glm::dot(w, point.ng) * side < 0) w = -w;
+            if (i % 4 == 0) w = glm::normalize(w - 0.9999f * glm::dot(w, point.ng) * point.ng);  // grazing
+            if (glm::dot(w, point.ng) * side <= 0) continue;  // Rounding took the grazing ray to the other side.
+            const Ray leaving{.origin = offset_ray_origin(point.p, point.p_error, point.ng, w), .direction = w};
+            const Hit again = intersect(*list, leaving);
+            if (is_flat(instances[0].shape)) {
+                ASSERT_FALSE(again.valid() && again.primitive == hit.primitive)
+                    << "shape " << instances[0].shape.index();
+            } else if (side > 0) {
+                ASSERT_FALSE(again.valid()) << "shape " << instances[0].shape.index() << " t " << again.t;
+            } else if (std::holds_alternative<Box>(instances[0].shape)) {
+                ASSERT_NE(again.primitive, hit.primitive) << "t " << again.t;
+            }
+        }
+    }
+    EXPECT_GT(tested, 10000);
+}
+
+/// Offsets are small enough not to jump over a second surface 64 ulp behind the first.
+TEST(SurfacePoint, LeavingRaysFindASurfaceCloseBehind) {
+    Random random(3);
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3 at = random.direction() * std::exp(random.uniform(std::log(1e-3f), std::log(1e6f)));
+        const float largest = max_component(glm::abs(at));
+        const float gap = 64 * (next_up(largest) - largest);
+        const float size = largest;
+        const auto quad_at = [&](float y) {
+            return Quad{Vec3(at.x - size, y, at.z + size), Vec3(2 * size, 0, 0), Vec3(0, 0, -2 * size)};
+        };
+        const std::vector<GeometryInstance> instances{{quad_at(at.y), {}}, {quad_at(at.y - gap), {}}};
+        const auto list = build(instances, {.kind = AcceleratorKind::list});
+        const Ray ray{.origin = at + Vec3(0, size, 0),
+                      .direction = Vec3(random.uniform(-0.3f, 0.3f), -1, random.uniform(-0.3f, 0.3f))};
+        const Hit first = intersect(*list, ray);
+        ASSERT_EQ(first.object, 0u);
+        const SurfacePoint point = surface_point(instances, ray, first);
+        const Vec3 origin = offset_ray_origin(point.p, point.p_error, point.ng, ray.direction);
+        ASSERT_EQ(intersect(*list, {.origin = origin, .direction = ray.direction}).object, 1u);
+    }
+}
+
+}  // namespace
+}  // namespace rayuela::test
