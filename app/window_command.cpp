@@ -23,7 +23,7 @@ Result<void> run_window(const WindowOptions& options) {
     auto context = make_window_context("Rayuela", {1600, 900});
     if (!context) return tl::unexpected(context.error());
     Application application(std::move(*context), load_preferences(default_config_folder()), options.threads);
-    application.editor().open(options.scene.empty() ? assets_path() / "scenes" / "final.scene.json" : options.scene);
+    application.editor().open(options.scene.empty() ? assets_folder() / "scenes" / "final.scene.json" : options.scene);
     application.run();
     return {};
 }
