@@ -21,13 +21,14 @@ Decoded decode(const std::string& bytes) {
     Imf::InputFile file(stream);
     const Imath::Box2i window = file.header().dataWindow();
     const long long width = 1LL + window.max.x - window.min.x, height = 1LL + window.max.y - window.min.y;
-    Decoded image = make_image(width, height);
+    Decoded image = image_of_size(width, height);
     if (!image) return image;
 
     const Imf::ChannelList& channels = file.header().channels();
     const bool grey = !channels.findChannel("R") && channels.findChannel("Y");
     const std::array<const char*, 4> names = grey ? std::array{"Y", "Y", "Y", "A"} : std::array{"R", "G", "B", "A"};
     if (!channels.findChannel(names[0])) return tl::unexpected<std::string>("has no channel R, G, B or Y");
+    allocate(*image);
     Imf::FrameBuffer frame;
     for (std::size_t i = 0; i < 4; ++i) {
         const Imf::Channel* channel = channels.findChannel(names[i]);

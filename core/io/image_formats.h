@@ -10,7 +10,8 @@ namespace rayuela::image_formats {
 /// file's name.
 using Decoded = tl::expected<Image, std::string>;
 
-Decoded decode_stb(std::string_view bytes, ColorDecoding decoding);  ///< PNG, JPEG, Radiance HDR.
+Decoded decode_stb(std::string_view bytes, ColorDecoding decoding);  ///< PNG, JPEG.
+Decoded decode_hdr(std::string_view bytes);
 Decoded decode_exr(const std::string& bytes);
 Decoded decode_pfm(std::string_view bytes);
 
@@ -19,7 +20,10 @@ tl::expected<std::string, std::string> encode_hdr(const Image& image);
 tl::expected<std::string, std::string> encode_exr(const Image& image);
 tl::expected<std::string, std::string> encode_pfm(const Image& image);
 
-/// An image of that size, or why it is refused.
-Decoded make_image(long long width, long long height);
+/// An image of that size without pixels yet, or why the size is refused. Pixels are allocated once the file has shown
+/// that it holds them.
+Decoded image_of_size(long long width, long long height);
+/// Gives it its pixels, black and opaque.
+void allocate(Image& image);
 
 }  // namespace rayuela::image_formats

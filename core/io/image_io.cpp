@@ -29,9 +29,8 @@ const Writer* find_writer(const fs::path& path) {
 
 Decoded decode(const std::string& bytes, ColorDecoding decoding) {
     const std::string_view view = bytes;
-    if (view.starts_with("\x89PNG\r\n") || view.starts_with("\xff\xd8\xff") || view.starts_with("#?")) {
-        return decode_stb(view, decoding);
-    }
+    if (view.starts_with("\x89PNG\r\n") || view.starts_with("\xff\xd8\xff")) return decode_stb(view, decoding);
+    if (view.starts_with("#?")) return decode_hdr(view);
     if (view.starts_with("\x76\x2f\x31\x01")) return decode_exr(bytes);
     if (view.starts_with("PF") || view.starts_with("Pf")) return decode_pfm(view);
     if (view.empty()) return tl::unexpected<std::string>("is empty");
@@ -76,7 +75,7 @@ bool is_writable_image(const fs::path& path) {
     return find_writer(path) != nullptr;
 }
 
-Decoded image_formats::make_image(long long width, long long height) {
+Decoded image_formats::image_of_size(long long width, long long height) {
     if (width <= 0 || height <= 0) return tl::unexpected<std::string>("has no pixels");
     if (width > (1 << 24) || height > (1 << 24) || static_cast<std::size_t>(width * height) > kMaxImagePixels) {
         return tl::unexpected("is too large: " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
@@ -84,8 +83,12 @@ Decoded image_formats::make_image(long long width, long long height) {
     Image image;
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
-    image.pixels.assign(static_cast<std::size_t>(width * height), Vec4(0, 0, 0, 1));
     return image;
+}
+
+void image_formats::allocate(Image& image) {
+    image.pixels.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+                        Vec4(0, 0, 0, 1));
 }
 
 }  // namespace rayuela

@@ -40,8 +40,9 @@ Decoded decode_pfm(std::string_view bytes) {
     if (width > 0 && height > 0 && pixel_count > bytes.size() / (4 * channels)) {
         return tl::unexpected<std::string>("is truncated");
     }
-    Decoded image = make_image(width, height);
+    Decoded image = image_of_size(width, height);
     if (!image) return image;
+    allocate(*image);
     const char* from = bytes.data();
     for (int y = height - 1; y >= 0; --y) {
         for (int x = 0; x < width; ++x) {

@@ -50,16 +50,13 @@ Decoded decode_stb(std::string_view bytes, ColorDecoding decoding) {
     const int size = static_cast<int>(bytes.size());
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels)) return failure();
-    Decoded image = make_image(width, height);
+    Decoded image = image_of_size(width, height);
     if (!image) return image;
 
-    if (stbi_is_hdr_from_memory(data, size)) {
-        const StbPixels<float> pixels(stbi_loadf_from_memory(data, size, &width, &height, &channels, 4));
-        if (failed(pixels, *image, width, height)) return failure();
-        convert(pixels.get(), image->pixels, 1, [](float value) { return value; });
-    } else if (stbi_is_16_bit_from_memory(data, size)) {
+    if (stbi_is_16_bit_from_memory(data, size)) {
         const StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &width, &height, &channels, 4));
         if (failed(pixels, *image, width, height)) return failure();
+        allocate(*image);
         convert(pixels.get(), image->pixels, 65535, [&](stbi_us value) {
             const float unit = static_cast<float>(value) / 65535;
             return decoding == ColorDecoding::srgb ? srgb_to_linear(unit) : unit;
@@ -67,6 +64,7 @@ Decoded decode_stb(std::string_view bytes, ColorDecoding decoding) {
     } else {
         const StbPixels<stbi_uc> pixels(stbi_load_from_memory(data, size, &width, &height, &channels, 4));
         if (failed(pixels, *image, width, height)) return failure();
+        allocate(*image);
         std::array<float, 256> table;
         for (std::size_t i = 0; i < table.size(); ++i) {
             const float unit = static_cast<float>(i) / 255;

@@ -145,7 +145,7 @@ private:
     std::vector<Level> levels_;
 };
 
-constexpr std::size_t kLineWidth = 110;
+constexpr std::size_t kLineWidth = 140;
 
 std::string quoted(const std::string& text) {
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -59,22 +59,38 @@ private:
         line.remove_prefix(keyword.size());
         if (keyword == "v" || keyword == "vn") check_words(line, "0123456789+-.eE", 3, 64);
         if (keyword == "vt") check_words(line, "0123456789+-.eE", 1, 64);
-        // Nine digits a number: three numbers, two slashes and three signs.
-        if (keyword == "f") check_words(line, "0123456789-/", 3, 32);
+        if (keyword == "f" && check_words(line, "0123456789-/", 3, 64)) check_indices(line);
     }
 
-    void check_words(std::string_view line, std::string_view letters, std::size_t min_count, std::size_t max_length) {
+    /// The parser's integers wrap round where they overflow.
+    void check_indices(std::string_view line) {
+        constexpr std::string_view kDigits = "0123456789";
+        while (true) {
+            line.remove_prefix(std::min(line.find_first_of(kDigits), line.size()));
+            if (line.empty()) return;
+            const std::size_t length = std::min(line.find_first_not_of(kDigits), line.size());
+            if (length > 9)
+                return problem(
+                    line_, fmt::format("the index {} is too large", line.substr(0, std::min<std::size_t>(length, 32))));
+            line.remove_prefix(length);
+        }
+    }
+
+    bool check_words(std::string_view line, std::string_view letters, std::size_t min_count, std::size_t max_length) {
         std::size_t count = 0;
         for (;; ++count) {
             line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
             if (line.empty()) break;
             const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
             if (word.size() > max_length || word.find_first_not_of(letters) != std::string_view::npos) {
-                return problem(line_, fmt::format("'{}' is no number", word.substr(0, 32)));
+                problem(line_, fmt::format("'{}' is no number", word.substr(0, 32)));
+                return false;
             }
             line.remove_prefix(word.size());
         }
-        if (count < min_count) problem(line_, fmt::format("has {} numbers where {} are needed", count, min_count));
+        if (count >= min_count) return true;
+        problem(line_, fmt::format("has {} numbers where {} are needed", count, min_count));
+        return false;
     }
 
     std::string text_, name_;
