@@ -180,7 +180,7 @@ std::string veach() {
 /// Strings of bulbs under the ceiling of a hall.
 std::string many_lights() {
     constexpr int kStrings = 9, kBulbs = 36;
-    const std::vector<Vec3d> colors = {{30, 17, 7}, {30, 20, 10}, {30, 9, 5}, {8, 20, 30}, {26, 10, 24}};
+    const std::vector<Vec3d> colors = {{17, 11, 5}, {18, 13, 7}, {18, 6, 3}, {5, 12, 18}, {8, 16, 8}};
     std::vector<std::string> materials = {
         diffuse("wall", {0.62, 0.6, 0.57}),
         diffuse("left wall", {0.45, 0.2, 0.14}),
