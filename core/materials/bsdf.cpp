@@ -35,7 +35,7 @@ std::optional<BsdfSample> Bsdf::sample(const Vec3& wo, float u_lobe, const Vec2&
     if (!(std::abs(wo.z) > 0)) return std::nullopt;
     std::optional<BsdfSample> s = std::visit([&](const auto& lobes) { return lobes.sample(wo, u_lobe, u); }, lobes_);
     // A density of 0, infinity or NaN comes from directions at the very edge of a lobe: rounding took them outside.
-    if (!s || !(s->pdf > 0 && s->pdf < INFINITY) || is_black(s->weight)) return std::nullopt;
+    if (!s || !(s->pdf > 0 && s->pdf < INFINITY) || !is_finite(s->wi) || is_black(s->weight)) return std::nullopt;
     return s;
 }
 
