@@ -209,7 +209,7 @@ TEST(KdBuilder, TreeDoesNotDependOnTheNumberOfThreads) {
     const MeshPtr mesh = make_ball(100, 1, Vec3(0), 0.02f, 9);
     for (const KdSplit split : {KdSplit::median, KdSplit::sah}) {
         KdTree trees[2];
-        for (const int threads : {1, 4}) {
+        for (const int threads : {1, tbb::task_arena::automatic}) {
             tbb::task_arena arena(threads);
             arena.execute([&] { trees[threads == 1 ? 0 : 1] = build_tree(*mesh, split, 8); });
         }
