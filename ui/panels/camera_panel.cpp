@@ -22,6 +22,7 @@ void draw_view_buttons(Editor& editor) {
     const float spacing = ImGui::GetStyle().ItemInnerSpacing.x;
     const float width = (ImGui::GetContentRegionAvail().x - 5 * spacing) / 6;
     bool first = true;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2, ImGui::GetStyle().FramePadding.y});
     for (const AxisView& view : axis_views()) {
         if (!first) ImGui::SameLine(0, spacing);
         first = false;
@@ -29,6 +30,7 @@ void draw_view_buttons(Editor& editor) {
             editor.edit(SetCamera{looking_along(camera, view)}, fmt::format("{} view", view.name));
         tooltip(fmt::format("Looks at the target from the {}.", view.name));
     }
+    ImGui::PopStyleVar();
 }
 
 void draw_framing_buttons(Editor& editor) {

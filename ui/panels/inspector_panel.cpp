@@ -14,7 +14,10 @@ namespace rayuela {
 namespace {
 
 bool section(const char* title, const char* tip) {
+    // A heading should not look like a selection.
+    ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetStyleColorVec4(ImGuiCol_TableHeaderBg));
     const bool open = ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
+    ImGui::PopStyleColor();
     tooltip(tip);
     return open;
 }

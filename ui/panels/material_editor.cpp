@@ -15,8 +15,7 @@ namespace {
 void swatch(const Material& material) {
     const float side = ImGui::GetTextLineHeight();
     ImGui::ColorButton("##swatch", display_color(swatch_color(material)),
-                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoBorder | ImGuiColorEditFlags_NoDragDrop,
-                       {side, side});
+                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, {side, side});
     tooltip(type_label(material));
 }
 

@@ -22,6 +22,20 @@ struct Row {
     bool has_children;
 };
 
+/// The text, cut so that it is at most so wide.
+std::string ellipsized(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    std::string cut = text;
+    while (!cut.empty() && ImGui::CalcTextSize((cut + "\u2026").c_str()).x > width) {
+        do {
+            cut.pop_back();
+        } while (!cut.empty() && (cut.back() & 0xc0) == 0x80);
+        // What is left of a multi-byte character goes with its first byte.
+        if (!cut.empty() && (static_cast<unsigned char>(cut.back()) >= 0xc0)) cut.pop_back();
+    }
+    return cut + "\u2026";
+}
+
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
     const auto equal = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
     return std::search(text.begin(), text.end(), part.begin(), part.end(), equal) != text.end();
@@ -122,6 +136,10 @@ void drag_and_drop(Editor& editor, const Object& object) {
     ImGui::EndDragDropTarget();
 }
 
+float row_end_width() {
+    return 1.5f * ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().ItemInnerSpacing.x;
+}
+
 /// Swatch of the material and eye at the right end of a row.
 void draw_row_end(Editor& editor, const Object& object) {
     const float button = ImGui::GetFrameHeight(), spacing = ImGui::GetStyle().ItemInnerSpacing.x;
@@ -130,10 +148,8 @@ void draw_row_end(Editor& editor, const Object& object) {
         const float swatch = 0.5f * button;
         ImGui::SameLine(ImGui::GetContentRegionMax().x - button - swatch - spacing);
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.25f * button);
-        ImGui::ColorButton(
-            "##material", display_color(swatch_color(material->material)),
-            ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoBorder | ImGuiColorEditFlags_NoDragDrop,
-            {swatch, swatch});
+        ImGui::ColorButton("##material", display_color(swatch_color(material->material)),
+                           ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, {swatch, swatch});
         tooltip(fmt::format("Material: {} ({})", material->name, type_label(material->material)));
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
@@ -165,7 +181,9 @@ void draw_row(Editor& editor, const Row& row) {
         const bool shown = editor.scene().is_visible(object.id);
         if (!shown) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
         ImGui::SetNextItemOpen(!state.collapsed.contains(object.id));
-        ImGui::TreeNodeEx(fmt::format("{}  {}###object", shape_icon(object.shape), object.name).c_str(), flags);
+        const float room = ImGui::GetContentRegionAvail().x - ImGui::GetTreeNodeToLabelSpacing() - row_end_width();
+        const std::string label = ellipsized(fmt::format("{}  {}", shape_icon(object.shape), object.name), room);
+        ImGui::TreeNodeEx((label + "###object").c_str(), flags);
         if (!shown) ImGui::PopStyleColor();
         if (ImGui::IsItemToggledOpen()) {
             if (state.collapsed.erase(object.id) == 0) state.collapsed.insert(object.id);
@@ -174,8 +192,8 @@ void draw_row(Editor& editor, const Row& row) {
         }
         if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
             state.begin_rename(object.id, object.name);
-        tooltip(fmt::format("{}\nClick selects, double-click renames; drag onto a list to put it there.",
-                            type_label(object.shape)));
+        tooltip(fmt::format("{}: {}\nClick selects, double-click renames; drag onto a list to put it there.",
+                            object.name, type_label(object.shape)));
         drag_and_drop(editor, object);
         draw_context_menu(editor, object);
         if (editor.scene().find(object.id)) draw_row_end(editor, object);

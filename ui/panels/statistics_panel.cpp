@@ -10,7 +10,6 @@
 namespace rayuela {
 namespace {
 
-constexpr const char* kPhaseNames[] = {"Idle", "Building", "Rendering", "Paused", "Finished"};
 constexpr const char* kRejectionNames[] = {"not a number", "infinite", "negative"};
 
 ImVec4 to_imgui(const Vec4& color) {
@@ -69,53 +68,53 @@ constexpr const char* kErrorTip =
     "truth, not a "
     "change between two frames. 1e-2 is noisy, 1e-4 looks clean; four times the samples give a quarter of it.";
 
-void draw_rendering(const RenderStatistics& s, const SessionStatus& status, float width) {
+std::string percent(double relative_mse) {
+    return fmt::format("{:.1f} %", 100 * std::sqrt(relative_mse));
+}
+
+void draw_rendering(const RenderStatistics& s, float width) {
     if (!begin_numbers("rendering", width)) return;
-    row("Phase", kPhaseNames[static_cast<std::size_t>(status.phase)], "What the renderer is doing.",
-        status.phase == SessionPhase::finished ? &theme::kGood : nullptr);
+    const bool known = s.estimated_error > 0;
+    std::uint64_t rejected = 0;
+    for (const std::uint64_t count : s.rejected) rejected += count;
     row("Samples a pixel", grouped(static_cast<std::uint64_t>(s.spp)), "Camera paths that every pixel has got.");
     row("Time", duration(s.render_seconds), "Rendering since the last restart, pauses left out.");
     row("Speed", with_unit(s.samples_per_second, "samples/s"), "Camera paths a second over the whole image.");
     row("Rays", with_unit(s.rays_per_second, "rays/s"), "Closest-hit and shadow rays a second.");
-    row("Error (relMSE)", s.estimated_error > 0 ? fmt::format("{:.2e}", s.estimated_error) : "-", kErrorTip);
-    row("Noise", s.estimated_error > 0 ? fmt::format("{:.2f} %", 100 * std::sqrt(s.estimated_error)) : "-",
+    row("Error (relMSE)", known ? fmt::format("{:.2e}", s.estimated_error) : "-", kErrorTip);
+    row("Noise", known ? percent(s.estimated_error) : "-",
         "Square root of the error: how far a pixel typically is from the truth.");
-    row("Paths", grouped(s.samples), "Camera paths since the last restart.");
-    row("Restarts", grouped(s.restarts), "How often accumulation has begun anew since the program started.");
-    row("Threads", std::to_string(s.threads), "Workers that trace rays.");
-    std::uint64_t rejected = 0;
-    for (const std::uint64_t count : s.rejected) rejected += count;
-    row("Rejected samples", grouped(rejected),
+    row("Rejected", grouped(rejected),
         "Samples left out because their value made no sense. Zero is right; anything else is a defect.",
         rejected > 0 ? &theme::kError : nullptr);
     for (std::size_t i = 0; i < s.rejected.size(); ++i) {
         if (s.rejected[i] > 0)
             row(kRejectionNames[i], grouped(s.rejected[i]), "Samples rejected for this cause.", &theme::kError);
     }
+    row("Memory", with_unit(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
+    row("Paths", grouped(s.samples), "Camera paths since the last restart.");
+    row("Restarts", grouped(s.restarts), "How often accumulation has begun anew since the program started.");
+    row("Threads", std::to_string(s.threads), "Workers that trace rays.");
     ImGui::EndTable();
 }
 
-void draw_structure(const RenderStatistics& s, const AccelSettings& settings, float width) {
+void draw_structure(const RenderStatistics& s, float width) {
     if (!begin_numbers("structure", width)) return;
     const AccelStats& a = s.accel;
-    const double per_primitive =
-        a.primitives > 0 ? static_cast<double>(a.references) / static_cast<double>(a.primitives) : 0;
-    const double per_leaf = a.leaves > 0 ? static_cast<double>(a.references) / static_cast<double>(a.leaves) : 0;
-    row("Structure",
-        settings.kind == AcceleratorKind::kd ? fmt::format("kd-tree, leaf {}", settings.leaf_size) : "list",
-        "How a ray finds what it hits.");
+    const auto ratio = [](std::uint64_t count, std::uint64_t of) {
+        return of > 0 ? fmt::format("{:.2f}", static_cast<double>(count) / static_cast<double>(of)) : "-";
+    };
     row("Build", duration(s.build_seconds),
         "Time to derive all that the renderer needs from the last edit, trees included.");
     row("Primitives", grouped(a.primitives), "Shapes and triangles; an instanced mesh counts once.");
     row("Nodes", grouped(a.nodes), "Inner nodes and leaves of all trees.");
     row("Leaves", grouped(a.leaves), "Leaves of all trees.");
     row("Depth", std::to_string(a.depth), "Of the deepest leaf.");
+    row("Refs a primitive", ratio(a.references, a.primitives),
+        "How often a primitive lies in a leaf, on average: 1 means that none was cut by a plane.");
+    row("Tree memory", with_unit(static_cast<double>(a.memory_bytes), "B"), "Of the acceleration structure.");
+    row("Refs a leaf", ratio(a.references, a.leaves), "Primitives that a ray meets in a leaf, on average.");
     row("References", grouped(a.references), "Primitives over all leaves: one that is cut by a plane lies in several.");
-    row("  a primitive", fmt::format("{:.2f}", per_primitive),
-        "How often a primitive lies in a leaf, on average: 1 means that none was cut.");
-    row("  a leaf", fmt::format("{:.2f}", per_leaf), "Primitives that a ray meets in a leaf, on average.");
-    row("Trees' memory", with_unit(static_cast<double>(a.memory_bytes), "B"), "Of the acceleration structure.");
-    row("Memory", with_unit(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
     ImGui::EndTable();
 }
 
@@ -130,17 +129,21 @@ void draw_plot(Editor& editor, float width) {
         return;
     }
     bool& over_time = editor.panels.plot_over_time;
-    if (ImGui::RadioButton("over samples", !over_time)) over_time = false;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Error over");
+    tooltip(kErrorTip);
+    ImGui::SameLine();
+    if (ImGui::RadioButton("samples", !over_time)) over_time = false;
     tooltip("Plots the error against samples a pixel.");
     ImGui::SameLine();
-    if (ImGui::RadioButton("over time", over_time)) over_time = true;
+    if (ImGui::RadioButton("seconds", over_time)) over_time = true;
     tooltip("Plots the error against seconds of rendering.");
     const float height = std::max(6 * ImGui::GetFontSize(), ImGui::GetContentRegionAvail().y - 2);
     const std::vector<double>& xs = over_time ? history.seconds : history.samples;
     if (ImPlot::BeginPlot("##convergence", {width, height},
                           ImPlotFlags_NoLegend | ImPlotFlags_NoMenus | ImPlotFlags_NoMouseText)) {
         const ImPlotAxisFlags flags = ImPlotAxisFlags_AutoFit | ImPlotAxisFlags_NoHighlight;
-        ImPlot::SetupAxes(over_time ? "seconds" : "samples a pixel", "error (relMSE)", flags, flags);
+        ImPlot::SetupAxes(nullptr, nullptr, flags, flags);
         ImPlot::SetupAxisScale(ImAxis_X1, ImPlotScale_Log10);
         ImPlot::SetupAxisScale(ImAxis_Y1, ImPlotScale_Log10);
         const int count = static_cast<int>(xs.size());
@@ -168,12 +171,12 @@ void draw_statistics_panel(Editor& editor) {
     const RenderStatistics& statistics = editor.frame()->statistics;
     const float available = ImGui::GetContentRegionAvail().x, spacing = ImGui::GetStyle().ItemSpacing.x;
     // Side by side where there is room, as at the bottom of the window; else one below the other.
-    const bool wide = available > 52 * ImGui::GetFontSize();
-    const float column = wide ? (available - 2 * spacing) * 0.3f : available;
-    draw_rendering(statistics, editor.session().status(), column);
-    if (wide) ImGui::SameLine();
-    draw_structure(statistics, editor.scene().render.accel, column);
-    if (wide) ImGui::SameLine();
+    const bool wide = available > 45 * ImGui::GetFontSize();
+    const float column = wide ? (available - 4 * spacing) * 0.28f : available;
+    draw_rendering(statistics, column);
+    if (wide) ImGui::SameLine(0, 2 * spacing);
+    draw_structure(statistics, column);
+    if (wide) ImGui::SameLine(0, 2 * spacing);
     draw_plot(editor, wide ? ImGui::GetContentRegionAvail().x : available);
 }
 
