@@ -163,7 +163,8 @@ void Application::Impl::draw_panels() {
     for (std::size_t i = 0; i < kPanels.size(); ++i) {
         bool open = !editor.panels.closed[i];
         if (!open) continue;
-        if (ImGui::Begin(kPanels[i].name, &open, ImGuiWindowFlags_NoCollapse)) kPanels[i].draw(editor);
+        if (ImGui::Begin(kPanels[i].name, &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoFocusOnAppearing))
+            kPanels[i].draw(editor);
         ImGui::End();
         editor.panels.closed[i] = !open;
     }
@@ -244,6 +245,10 @@ Editor& Application::editor() {
 
 void Application::draw_frame() {
     impl_->draw(true);
+}
+
+const Display::Statistics& Application::display_statistics() const {
+    return impl_->viewport.display().statistics();
 }
 
 void Application::run() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ui/display.h"
 #include "ui/editor.h"
 #include "ui/gl_context.h"
 
@@ -21,6 +22,7 @@ public:
     void draw_frame();
     /// Draws until the scene is loaded and its image has at least `spp` samples, then returns what the window shows.
     Image screenshot(int spp);
+    const Display::Statistics& display_statistics() const;
 
 private:
     struct Impl;

@@ -32,13 +32,15 @@ ViewSettings zoomed_at(const ViewSettings& view, const Vec2& viewport, const Vec
                        float factor) {
     const ViewSettings before = explicit_zoom(view, viewport, image);
     ViewSettings result = before;
-    const Vec2 pixel = image_view(before, viewport, image).to_image(position);
+    // From the pan rather than the image's rounded place, so that many small steps do not add up roundings.
+    const Vec2 from_middle = position - 0.5f * viewport;
+    const Vec2 pixel = from_middle / before.zoom - Vec2(before.pan_x, before.pan_y);
     result.zoom = std::clamp(result.zoom * factor, kMinZoom, kMaxZoom);
     // What comes near a whole zoom lands on it: there pixels are sharp.
     const float whole = std::round(result.zoom), away = std::abs(result.zoom - whole);
     const bool approaching = away < std::abs(before.zoom - whole);
     if (whole >= 1 && approaching && away < 0.04f * whole) result.zoom = whole;
-    const Vec2 pan = (position - 0.5f * viewport) / result.zoom - pixel + 0.5f * image;
+    const Vec2 pan = from_middle / result.zoom - pixel;
     result.pan_x = pan.x;
     result.pan_y = pan.y;
     return result;

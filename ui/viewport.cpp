@@ -58,6 +58,9 @@ void Viewport::draw(Editor& editor) {
         const ImVec2 room = ImGui::GetContentRegionAvail();
         draw_image(editor, {std::floor(room.x), std::floor(room.y - height)});
         ImGui::SetCursorPosY(ImGui::GetWindowHeight() - height);
+        const bool focused = ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) || ImGui::IsWindowHovered();
+        const bool busy = ImGui::GetIO().WantTextInput || ImGui::IsAnyMouseDown();
+        if (focused && !busy && ImGui::IsKeyPressed(ImGuiKey_Escape, false)) editor.selection.reset();
         strip("status", height, [&] { draw_status_line(editor, hovered_pixel_); });
     }
     ImGui::End();
