@@ -2,6 +2,7 @@
 #include "core/io/image_io.h"
 #include "ui/application.h"
 #include "ui/assets_path.h"
+#include "ui/tone_map.h"
 
 #include <fmt/format.h>
 
@@ -35,8 +36,11 @@ Result<void> run_screenshot(const ScreenshotOptions& options) {
     Application application(std::move(*context), Preferences{.first_start = false}, options.threads);
     Editor& editor = application.editor();
     editor.open(options.scene);
-    const Image image = application.screenshot(options.spp);
+    Image image = application.screenshot(options.spp);
     if (editor.file() != options.scene) return tl::unexpected(errors_of(editor.log));
+    for (Vec4& pixel : image.pixels) {
+        for (int channel = 0; channel < 3; ++channel) pixel[channel] = linear_from_srgb(pixel[channel]);
+    }
     return write_image(options.output, image);
 }
 
