@@ -1,0 +1,167 @@
+#include "core/math/sampler.h"
+
+#include "tests/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace rayuela {
+namespace {
+
+constexpr SamplerKind kKinds[] = {SamplerKind::independent, SamplerKind::sobol};
+
+TEST(Sampler, AllWordsMapBelowOne) {
+    EXPECT_EQ(to_unit_float(0), 0);
+    EXPECT_EQ(to_unit_float(0xffffffffu), 1 - 0x1p-24f);
+    EXPECT_LT(to_unit_float(0xffffffffu), 1);
+}
+
+TEST(Sampler, ReversesBits) {
+    for (const std::uint32_t x : {0x1u, 0x80000000u, 0x12345678u, 0xdeadbeefu}) {
+        std::uint32_t expected = 0;
+        for (int bit = 0; bit < 32; ++bit) expected |= ((x >> bit) & 1u) << (31 - bit);
+        EXPECT_EQ(reverse_bits(x), expected);
+    }
+}
+
+TEST(Sampler, SecondSobolDimensionAgreesWithItsDirectionNumbers) {
+    // Joe & Kuo: primitive polynomial x + 1, v_1 = 1/2, v_i = v_(i-1) ^ (v_(i-1) / 2).
+    std::uint32_t v[32] = {0x80000000u};
+    for (int i = 1; i < 32; ++i) v[i] = v[i - 1] ^ (v[i - 1] >> 1);
+    for (std::uint32_t k = 0; k < 10'000; ++k) {
+        const auto index = static_cast<std::uint32_t>(mix_bits(k));
+        std::uint32_t expected = 0;
+        for (int bit = 0; bit < 32; ++bit) {
+            if (index >> bit & 1) expected ^= v[bit];
+        }
+        ASSERT_EQ(reverse_bits(sobol_second_reversed(index)), expected) << index;
+    }
+}
+
+TEST(Sampler, OwenScramblingKeepsElementaryIntervals) {
+    // Two numbers that agree in their first bits still agree in them: nested scrambling permutes intervals.
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const auto a = static_cast<std::uint32_t>(mix_bits(i));
+        const auto seed = static_cast<std::uint32_t>(mix_bits(~std::uint64_t{i}));
+        for (int bits = 1; bits < 32; ++bits) {
+            const std::uint32_t b = a ^ (0x9e3779b9u << bits);  // agrees with a in its `bits` low bits
+            const std::uint32_t mask = (1u << bits) - 1;
+            ASSERT_EQ((owen_scramble_reversed(a, seed) ^ owen_scramble_reversed(b, seed)) & mask, 0u);
+        }
+    }
+}
+
+TEST(Sampler, SobolPairsFillEveryElementaryIntervalOnce) {
+    for (const std::uint32_t pixel : {0u, 1u, 77'777u}) {
+        for (const std::uint32_t dimension : {0u, 1u, 60u}) {
+            for (int m = 1; m <= 8; ++m) {
+                for (std::uint32_t block = 0; block < 3; ++block) {
+                    for (int a = 0; a <= m; ++a) {
+                        std::set<int> cells;
+                        for (std::uint32_t i = 0; i < (1u << m); ++i) {
+                            const Sampler sampler(SamplerKind::sobol, 9, pixel, (block << m) + i);
+                            const Vec2 u = sampler.get_2d(dimension);
+                            const int x = static_cast<int>(std::ldexp(u.x, a));
+                            const int y = static_cast<int>(std::ldexp(u.y, m - a));
+                            cells.insert(x << (m - a) | y);
+                        }
+                        ASSERT_EQ(cells.size(), std::size_t{1} << m)
+                            << pixel << " " << dimension << " " << m << " " << a;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Sampler, SobolNumbersAreStratified) {
+    for (int m = 1; m <= 10; ++m) {
+        std::set<int> cells;
+        for (std::uint32_t i = 0; i < (1u << m); ++i) {
+            cells.insert(static_cast<int>(std::ldexp(Sampler(SamplerKind::sobol, 0, 5, i).get_1d(3), m)));
+        }
+        EXPECT_EQ(cells.size(), std::size_t{1} << m);
+    }
+}
+
+TEST(Sampler, ValuesAreUniformOverPixels) {
+    constexpr std::size_t kCells = 64;
+    const double level = test::sidak(1e-3, 2 * 8);
+    for (const SamplerKind kind : kKinds) {
+        for (const std::uint32_t dimension : {0u, 1u, 2u, 3u, 17u, 100u, 1000u, 0xffffffffu}) {
+            std::vector<double> counts(kCells * kCells), expected(kCells * kCells, 16);
+            for (std::uint32_t pixel = 0; pixel < kCells * kCells * 16; ++pixel) {
+                const Vec2 u = Sampler(kind, 3, pixel, pixel % 7).get_2d(dimension);
+                const auto x = static_cast<std::size_t>(u.x * kCells), y = static_cast<std::size_t>(u.y * kCells);
+                ++counts[y * kCells + x];
+            }
+            EXPECT_GT(test::chi_square_test(counts, expected), level) << static_cast<int>(kind) << " " << dimension;
+        }
+    }
+}
+
+/// Correlation of what two callables draw, in standard errors.
+template <typename F, typename G>
+double correlation(const F& f, const G& g) {
+    const int n = 20'000;
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += (f(std::uint32_t(i)) - 0.5) * (g(std::uint32_t(i)) - 0.5) * 12;
+    return sum / std::sqrt(n);
+}
+
+TEST(Sampler, PixelsSeedsAndDimensionsAreIndependent) {
+    for (const SamplerKind kind : kKinds) {
+        const auto base = [kind](std::uint32_t pixel) { return Sampler(kind, 1, pixel, 4).get_1d(2); };
+        const auto other_dimension = [kind](std::uint32_t pixel) { return Sampler(kind, 1, pixel, 4).get_1d(3); };
+        const auto other_seed = [kind](std::uint32_t pixel) { return Sampler(kind, 2, pixel, 4).get_1d(2); };
+        const auto next_pixel = [kind](std::uint32_t pixel) { return Sampler(kind, 1, pixel + 1, 4).get_1d(2); };
+        const auto shifted = [kind](std::uint32_t pixel) { return Sampler(kind, 1, pixel, 5).get_1d(40); };
+        EXPECT_LT(std::abs(correlation(base, other_dimension)), 4);
+        EXPECT_LT(std::abs(correlation(base, other_seed)), 4);
+        EXPECT_LT(std::abs(correlation(base, next_pixel)), 4);
+        EXPECT_LT(std::abs(correlation(base, shifted)), 4);
+        EXPECT_GT(correlation(base, base), 100);
+    }
+}
+
+TEST(Sampler, IntegrationError) {
+    // Of exp(x y) over the unit square, whose integral is sum 1 / (k! (k + 1)^2). Independent samples must show the error
+    // that the variance says, Sobol pairs a far smaller one; a product over two dimensions of the sampler keeps some gain.
+    double exact = 0, square = 0, factorial = 1;
+    for (int k = 0; k < 20; ++k) {
+        if (k > 0) factorial *= k;
+        exact += 1 / (factorial * (k + 1) * (k + 1));
+        square += std::pow(2.0, k) / (factorial * (k + 1) * (k + 1));
+    }
+    const double sigma = std::sqrt(square - exact * exact);
+    const auto rms = [&](SamplerKind kind, std::uint32_t n) {
+        double sum = 0;
+        for (std::uint32_t pixel = 0; pixel < 1000; ++pixel) {
+            double mean = 0;
+            for (std::uint32_t i = 0; i < n; ++i) {
+                const Vec2 u = Sampler(kind, 0, pixel, i).get_2d(6);
+                mean += std::exp(double(u.x) * u.y) / n;
+            }
+            sum += (mean - exact) * (mean - exact) / 1000;
+        }
+        return std::sqrt(sum);
+    };
+    for (const std::uint32_t n : {16u, 64u}) {
+        EXPECT_NEAR(rms(SamplerKind::independent, n) * std::sqrt(n) / sigma, 1, 0.1);
+    }
+    EXPECT_LT(rms(SamplerKind::sobol, 64), 0.08 * sigma / 8);
+    EXPECT_LT(rms(SamplerKind::sobol, 100), 0.2 * sigma / 10) << "between powers of two as well";
+}
+
+TEST(Sampler, DifferentSamplesDiffer) {
+    for (const SamplerKind kind : kKinds) {
+        std::set<float> values;
+        for (std::uint32_t i = 0; i < 1000; ++i) values.insert(Sampler(kind, 0, 0, i).get_1d(0));
+        EXPECT_GT(values.size(), 995u);
+    }
+}
+
+}  // namespace
+}  // namespace rayuela
