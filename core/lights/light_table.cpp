@@ -18,12 +18,9 @@ LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<co
     std::vector<float> powers;
     for (const AreaLight& light : lights_) powers.push_back(light.power());
     by_power_ = AliasTable(powers);
-    if (by_power_.empty()) {
-        lights_ = {};
-    } else {
-        lights_.shrink_to_fit();
-        first_light_ = std::move(first_light);
-    }
+    if (by_power_.empty()) lights_.clear();
+    if (!by_power_.empty()) first_light_ = std::move(first_light);
+    lights_.shrink_to_fit();
 
     const EnvironmentLight light(environment);
     if (!light.image()) return;
@@ -43,16 +40,30 @@ float LightTable::selection_probability(const Vec3&, std::uint32_t light) const 
 }
 
 std::optional<LightSample> LightTable::sample(const Vec3& p, float u_select, const Vec2& u) const {
-    std::optional<LightSample> s;
-    if (u_select < environment_probability_) {
-        s = environment_->sample(u);
-        if (s) s->pdf *= environment_probability_;
-        return s;
-    }
     const float share = 1 - environment_probability_;
-    const AliasTable::Draw draw = select(p, std::min((u_select - environment_probability_) / share, 1 - kUnitRoundoff));
-    s = lights_[draw.index].sample(p, u);
-    if (s) s->pdf *= share * draw.probability;
+    if (u_select < environment_probability_) return sample_environment(u);
+    const float rest = (u_select - environment_probability_) / share;
+    return sample_area_light(p, select(p, std::min(rest, 1 - kUnitRoundoff)), u);
+}
+
+std::optional<LightSample> LightTable::sample(const Vec3& p, const Vec2& u) const {
+    const float share = 1 - environment_probability_;
+    if (u.x < environment_probability_) return sample_environment({u.x / environment_probability_, u.y});
+    const float rest = (u.x - environment_probability_) / share;
+    const AliasTable::Draw draw = select(p, std::min(rest, 1 - kUnitRoundoff));
+    return sample_area_light(p, draw, {draw.remainder, u.y});
+}
+
+std::optional<LightSample> LightTable::sample_environment(const Vec2& u) const {
+    auto s = environment_->sample(u);
+    if (s) s->pdf *= environment_probability_;
+    return s;
+}
+
+std::optional<LightSample> LightTable::sample_area_light(const Vec3& p, const AliasTable::Draw& draw,
+                                                         const Vec2& u) const {
+    auto s = lights_[draw.index].sample(p, u);
+    if (s) s->pdf *= (1 - environment_probability_) * draw.probability;
     return s && s->pdf > 0 ? s : std::nullopt;
 }
 

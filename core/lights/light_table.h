@@ -32,6 +32,9 @@ public:
     /// A direction from `p` towards a light. `u_select` in [0, 1) chooses the light, `u` in [0, 1)^2 the point on it.
     /// Nothing where the point does not shine towards p.
     std::optional<LightSample> sample(const Vec3& p, float u_select, const Vec2& u) const;
+    /// The same with one pair for both: u.x chooses, and what that leaves of it places the point. Where `u` is stratified,
+    /// so are the points of each light.
+    std::optional<LightSample> sample(const Vec3& p, const Vec2& u) const;
 
     /// Density per solid angle at `p` with which `sample` draws the unit direction `wi`, which hits the surface `hit` at
     /// `hit_point` (unit geometric normal `ng` of the front). 0 where it would not.
@@ -46,6 +49,8 @@ public:
 private:
     /// A light for shading at p. By power alone for now, so that p does not matter.
     AliasTable::Draw select(const Vec3& p, float u) const;
+    std::optional<LightSample> sample_environment(const Vec2& u) const;
+    std::optional<LightSample> sample_area_light(const Vec3& p, const AliasTable::Draw& draw, const Vec2& u) const;
     float selection_probability(const Vec3& p, std::uint32_t light) const;
 
     std::vector<AreaLight> lights_;           ///< Those of an object lie together, in the order of its primitives.
