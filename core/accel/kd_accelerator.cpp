@@ -8,9 +8,6 @@
 namespace rayuela {
 namespace {
 
-/// Cost of a step of traversal over that of a test of one object.
-constexpr float kStepCost = 0.25f;
-
 bool same_trees(const AccelSettings& a, const AccelSettings& b) {
     return a.split == b.split && a.leaf_size == b.leaf_size;
 }
@@ -72,12 +69,9 @@ bool KdAccelerator::build_objects(BuildControl& control) {
         if (objects_[i].is_plane()) planes_.push_back(i);
         if (!mesh) ++stats_.primitives;
     }
-    auto tree = build_kd_tree({.bounds = bounds,
-                               .split = settings_.split,
-                               .leaf_size = settings_.leaf_size,
-                               .step_cost = kStepCost,
-                               .split_below_leaf_size = true},
-                              control);
+    auto tree = build_kd_tree(
+        {.bounds = bounds, .split = settings_.split, .leaf_size = settings_.leaf_size, .split_below_leaf_size = true},
+        control);
     if (!tree) return false;
     tree_ = std::move(*tree);
     for (const auto& mesh_tree : mesh_trees_) stats_ += mesh_tree->stats;

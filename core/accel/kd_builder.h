@@ -13,8 +13,7 @@ struct KdBuildInput {
     const TriangleMesh* mesh = nullptr;
     KdSplit split = KdSplit::sah;
     int leaf_size = 16;
-    /// Cost of a step of traversal over that of a test of one primitive (sah).
-    float step_cost = 1;
+    float step_cost = 1;  ///< Of a step of traversal, in tests of one primitive (sah).
     /// Whether sah may cut a node of up to leaf_size primitives where that pays.
     bool split_below_leaf_size = false;
 };

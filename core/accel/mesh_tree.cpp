@@ -8,12 +8,10 @@
 namespace rayuela {
 namespace {
 
-/// Cost of a step of traversal over that of one of the triangles that a leaf tests at once.
-constexpr float kStepCost = 1.0f;
-
-std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh) {
+std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildControl& control) {
     std::vector<Bounds3> bounds(mesh.triangles.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bounds.size(), 4096), [&](const auto& range) {
+        if (control.cancelled) return;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const glm::uvec3& t = mesh.triangles[i];
             const Vec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
@@ -39,11 +37,12 @@ void write_leaf(const TriangleMesh& mesh, std::span<const std::uint32_t> triangl
     }
 }
 
-std::unique_ptr<float[]> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree) {
+std::unique_ptr<float[]> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, const BuildControl& control) {
     const std::size_t size = MeshTree::kRuns * tree.references.size();
     auto data = std::make_unique_for_overwrite<float[]>(size + MeshTree::kPadding);
     std::fill_n(data.get() + size, MeshTree::kPadding, 0.0f);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 1024), [&](const auto& range) {
+        if (control.cancelled) return;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const KdNode& node = tree.nodes[i];
             if (!node.is_leaf() || node.count() == 0) continue;
@@ -58,19 +57,16 @@ std::unique_ptr<float[]> make_leaf_data(const TriangleMesh& mesh, const KdTree& 
 
 std::shared_ptr<const MeshTree> build_mesh_tree(std::shared_ptr<const TriangleMesh> mesh, const AccelSettings& settings,
                                                 BuildControl& control) {
-    const std::vector<Bounds3> bounds = triangle_bounds(*mesh);
+    const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
     if (control.cancelled) return nullptr;
-    auto tree = build_kd_tree({.bounds = bounds,
-                               .mesh = mesh.get(),
-                               .split = settings.split,
-                               .leaf_size = settings.leaf_size,
-                               .step_cost = kStepCost},
-                              control);
+    auto tree = build_kd_tree(
+        {.bounds = bounds, .mesh = mesh.get(), .split = settings.split, .leaf_size = settings.leaf_size}, control);
     if (!tree) return nullptr;
 
     auto result = std::make_shared<MeshTree>();
     result->tree = std::move(*tree);
-    result->leaf_data = make_leaf_data(*mesh, result->tree);
+    result->leaf_data = make_leaf_data(*mesh, result->tree, control);
+    if (control.cancelled) return nullptr;
     result->stats = result->tree.stats();
     result->stats.primitives = mesh->triangles.size();
     result->stats.memory_bytes +=

@@ -79,7 +79,9 @@ Surface surface_of(const Plane& plane, const GeometryInstance& instance, const R
     surface.ng = n;
     surface.size = max_abs(along) + max_abs(world.point);
 
-    const Vec3d own = AffineD(instance.to_world).inverse().point(surface.p) - Vec3d(plane.point);
+    const bool in_world = instance.to_world.is_identity();
+    const Vec3d own =
+        (in_world ? surface.p : AffineD(instance.to_world).inverse().point(surface.p)) - Vec3d(plane.point);
     const Vec3d own_normal = glm::normalize(Vec3d(plane.normal));
     const Vec3d axis = std::fabs(own_normal.y) > 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     const Vec3d s = glm::normalize(axis - glm::dot(axis, own_normal) * own_normal);
