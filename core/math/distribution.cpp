@@ -1,5 +1,7 @@
 #include "core/math/distribution.h"
 
+#include "core/math/float_error.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -49,8 +51,11 @@ AliasTable::Draw AliasTable::draw(float u) const {
     const float scaled = u * static_cast<float>(slots_.size());
     const std::size_t slot = std::min(static_cast<std::size_t>(scaled), slots_.size() - 1);
     const float within = scaled - static_cast<float>(slot);
-    const std::uint32_t index = within < slots_[slot].threshold ? static_cast<std::uint32_t>(slot) : slots_[slot].alias;
-    return {index, slots_[index].probability};
+    const float threshold = slots_[slot].threshold;
+    const bool own = within < threshold;
+    const std::uint32_t index = own ? static_cast<std::uint32_t>(slot) : slots_[slot].alias;
+    const float remainder = own ? within / threshold : (within - threshold) / (1 - threshold);
+    return {index, slots_[index].probability, std::min(remainder, 1 - kUnitRoundoff)};
 }
 
 Distribution1D::Distribution1D(std::span<const float> weights) {

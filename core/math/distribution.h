@@ -15,6 +15,7 @@ public:
     struct Draw {
         std::uint32_t index;
         float probability;
+        float remainder;  ///< What the choice leaves of u, in [0, 1): uniform, and stratified where u was.
     };
 
     AliasTable() = default;

@@ -164,16 +164,19 @@ TEST(LightTable, DensityIntegratesToTheChanceOfASample) {
     }
 }
 
-/// Irradiance at p on a surface of normal n by sampling the lights.
+/// Irradiance at p on a surface of normal n by sampling the lights, either way of drawing in turn.
 double irradiance(const World& world, const Vec3& p, const Vec3& n, std::uint32_t samples = 4096) {
     double sum = 0;
+    const auto add = [&](const std::optional<LightSample>& s) {
+        if (!s || world.occluded(shadow_ray(p, *s))) return;
+        sum += s->radiance.x * std::max(0.0f, glm::dot(n, s->wi)) / s->pdf;
+    };
     for (std::uint32_t i = 0; i < samples; ++i) {
         const Sampler sampler(SamplerKind::sobol, 7, 0, i);
-        const auto s = world.table.sample(p, sampler.get_1d(0), sampler.get_2d(1));
-        if (!s || world.occluded(shadow_ray(p, *s))) continue;
-        sum += s->radiance.x * std::max(0.0f, glm::dot(n, s->wi)) / s->pdf;
+        add(world.table.sample(p, sampler.get_1d(0), sampler.get_2d(1)));
+        add(world.table.sample(p, sampler.get_2d(2)));
     }
-    return sum / samples;
+    return sum / (2 * samples);
 }
 
 TEST(LightTable, SphereOverAPlane) {
@@ -257,16 +260,20 @@ TEST(LightTable, SelectionFollowsPower) {
     const Sphere small{Vec3(-3, 0, 0), 0.5f}, big{Vec3(3, 0, 0), 1.5f};
     const World world("two", {{small, {}}, {Plane{}, {}}, {big, {}}}, {lamp(Color(9)), Diffuse{}, lamp(Color(3))});
     EXPECT_EQ(world.table.size(), 2u);
-    int small_count = 0;
+    int small_count = 0, small_count_of_pairs = 0;
     constexpr std::uint32_t kCount = 4096;
     for (std::uint32_t i = 0; i < kCount; ++i) {
         const Sampler sampler(SamplerKind::sobol, 0, 0, i);
         const auto s = world.table.sample(Vec3(0), sampler.get_1d(0), sampler.get_2d(1));
         ASSERT_TRUE(s);
         small_count += s->wi.x < 0;
+        const auto pair = world.table.sample(Vec3(0), sampler.get_2d(1));
+        ASSERT_TRUE(pair);
+        small_count_of_pairs += pair->wi.x < 0;
     }
     // Powers 9 * 0.25 and 3 * 2.25.
     EXPECT_NEAR(small_count / double(kCount), 0.25, 1e-3);
+    EXPECT_NEAR(small_count_of_pairs / double(kCount), 0.25, 1e-3);
 }
 
 TEST(LightTable, WhatCannotBeSampledIsLeftOut) {

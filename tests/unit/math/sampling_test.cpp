@@ -136,6 +136,21 @@ TEST(AliasTable, FrequenciesFollowTheWeights) {
     EXPECT_GT(test::chi_square_test(counts, expected), 1e-3);
 }
 
+TEST(AliasTable, RemainderIsUniformForEachIndex) {
+    const AliasTable table(kWeights);
+    std::vector<std::vector<double>> counts(kWeights.size(), std::vector<double>(10));
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+        const AliasTable::Draw d = table.draw(draw(i).x);
+        ASSERT_TRUE(d.remainder >= 0 && d.remainder < 1);
+        ++counts[d.index][static_cast<std::size_t>(d.remainder * 10)];
+    }
+    for (std::size_t i = 0; i < kWeights.size(); ++i) {
+        if (kWeights[i] < 1) continue;
+        const std::vector<double> expected(10, kWeights[i] / 11.001 * kSamples / 10);
+        EXPECT_GT(test::chi_square_test(counts[i], expected), test::sidak(1e-3, 4)) << i;
+    }
+}
+
 TEST(AliasTable, ManyWeightsAndExtremes) {
     std::vector<float> weights;
     for (std::uint32_t i = 0; i < 1000; ++i) weights.push_back(i % 3 == 0 ? 0 : std::pow(draw(i).x, 8.0f));
