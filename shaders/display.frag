@@ -2,7 +2,7 @@
 // Shows the film: exposure, tone curve, sRGB, outline of what is selected. ui/tone_map.cpp computes the same colours.
 
 uniform sampler2D film;       // Linear radiance, first row at the top.
-uniform sampler2D selected;   // 1 where the selected object is seen; size of the film.
+uniform sampler2D selected;   // 1 where the selected object is seen; size of the film, interpolated.
 uniform vec2 target_size;     // Pixels.
 uniform vec2 origin;          // The image's upper left corner in the target, pixels from its upper left.
 uniform vec2 image_size;      // Of the film at full resolution.
@@ -107,7 +107,7 @@ vec3 filtered_film(vec2 texel, float texels) {
 
 bool is_selected(vec2 texel) {
     if (any(lessThan(texel, selected_bounds.xy)) || any(greaterThanEqual(texel, selected_bounds.zw))) return false;
-    return texelFetch(selected, ivec2(texel), 0).r > 0.0;
+    return textureLod(selected, texel / vec2(textureSize(selected, 0)), 0.0).r > 0.5;
 }
 
 // How much of the outline covers a position just outside the selected object.

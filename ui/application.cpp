@@ -223,13 +223,17 @@ bool Application::Impl::wait_and_decide(FrameTiming& timing) {
         glfwWaitEvents();
     }
     timing.now = now_seconds();
-    if (refresh || !ImGui::GetCurrentContext()->InputEventsQueue.empty()) timing.last_input = timing.now;
+    if (refresh || !ImGui::GetCurrentContext()->InputEventsQueue.empty()) {
+        timing.last_input = timing.now;
+        timing.frames_since_input = 0;
+    }
     refresh = false;
     timing.published = published;
     if (glfwWindowShouldClose(context->window())) {
         glfwSetWindowShouldClose(context->window(), GLFW_FALSE);
         editor.request_quit();
         timing.last_input = timing.now;
+        timing.frames_since_input = 0;
     }
     return seconds_to_next_frame(timing) <= 0 || (editor.is_loading() && timing.now - timing.last_draw >= kCheckLoads);
 }
@@ -255,7 +259,7 @@ void Application::run() {
     GLFWwindow* const window = impl_->context->window();
     if (!window) return;
     FrameTiming timing;
-    timing.last_input = now_seconds();
+    timing.frames_since_input = 0;
     while (!impl_->editor.wants_quit) {
         if (glfwGetWindowAttrib(window, GLFW_ICONIFIED)) {
             glfwWaitEvents();
@@ -268,6 +272,7 @@ void Application::run() {
         const double start = now_seconds();
         impl_->draw(true);
         timing.last_draw = start;
+        ++timing.frames_since_input;
         timing.draw_cost = now_seconds() - start;
         const std::shared_ptr<const Frame>& frame = impl_->editor.frame();
         timing.render_seconds = frame ? frame->statistics.render_seconds : 0;

@@ -32,6 +32,13 @@ bool is_zooming() {
 
 }  // namespace
 
+ObjectId next_selection(const Scene& scene, std::optional<ObjectId> selected, ObjectId hit) {
+    for (const Object* object = scene.find(hit); object; object = scene.find(object->parent)) {
+        if (selected == object->id) return object->parent ? object->parent : hit;
+    }
+    return hit;
+}
+
 void CameraControl::update(Editor& editor, const Canvas& canvas) {
     flying_ = false;
     if (ImGui::IsItemHovered()) wheel(editor, canvas);
@@ -108,7 +115,7 @@ void CameraControl::click(Editor& editor, const Canvas& canvas) {
         camera.target = camera.position + camera.focus_distance * camera_frame(camera).forward;
         set_camera(editor, camera, "Focus");
     } else if (hit) {
-        editor.selection = hit->object;
+        editor.selection = next_selection(editor.scene(), editor.selection, hit->object);
     } else {
         editor.selection.reset();
     }

@@ -20,6 +20,10 @@ struct Canvas {
     }
 };
 
+/// What a click on `hit` selects: the object, or, where that is selected already, the group that it belongs to, and so on
+/// up to the outermost; then the object again.
+ObjectId next_selection(const Scene& scene, std::optional<ObjectId> selected, ObjectId hit);
+
 /// What the mouse and keyboard do to the camera, the selection and the zoom, over the image. The last ImGui item must be
 /// the image's.
 class CameraControl {

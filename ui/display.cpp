@@ -48,12 +48,12 @@ unsigned link_program() {
     return program;
 }
 
-unsigned make_texture() {
+unsigned make_texture(int filter) {
     unsigned texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     return texture;
@@ -61,7 +61,11 @@ unsigned make_texture() {
 
 }  // namespace
 
-Display::Display() : program_(link_program()), film_(make_texture()), mask_(make_texture()), target_(make_texture()) {
+Display::Display()
+    : program_(link_program()),
+      film_(make_texture(GL_NEAREST)),
+      mask_(make_texture(GL_LINEAR)),
+      target_(make_texture(GL_NEAREST)) {
     glGenVertexArrays(1, &vertex_array_);
     glGenFramebuffers(1, &framebuffer_);
 }

@@ -12,6 +12,7 @@ constexpr double kLongest = 0.5;
 constexpr double kLargestShare = 0.08;  ///< Of the time, for drawing images that nobody asked for.
 constexpr double kShareOfAge = 0.02;    ///< An image 2 % older looks the same.
 constexpr double kSettling = 0.6;       ///< After an input: tooltips appear, hovering fades.
+constexpr int kSettlingFrames = 3;      ///< What a click changes is seen by what was drawn before it one frame later.
 constexpr double kSettlingFrame = 1.0 / 30;
 
 }  // namespace
@@ -23,14 +24,14 @@ double publish_interval(double draw_cost, double render_seconds) {
 
 double seconds_to_next_frame(const FrameTiming& timing) {
     double due = std::numeric_limits<double>::infinity();
-    const bool settling = timing.now - timing.last_input < kSettling;
+    const bool settling = timing.now - timing.last_input < kSettling || timing.frames_since_input < kSettlingFrames;
     // What a person has just touched must follow at once: then the image may take its share of the time.
     if (timing.published) {
         due = timing.last_draw + (settling ? kShortest : publish_interval(timing.draw_cost, timing.render_seconds));
     }
     if (timing.animating) due = std::min(due, timing.last_draw + kShortest);
     if (settling) due = std::min(due, timing.last_draw + kSettlingFrame);
-    if (timing.last_input > timing.last_draw) due = std::min(due, timing.last_draw + kShortest);
+    if (timing.frames_since_input == 0) due = std::min(due, timing.last_draw + kShortest);
     return std::max(0.0, due - timing.now);
 }
 

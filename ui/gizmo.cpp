@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "ui/navigation.h"
+#include "ui/theme.h"
 #include "ui/transform_edit.h"
 
 namespace rayuela {
@@ -39,6 +40,23 @@ float round_step(float distance) {
 ImGuizmo::OPERATION operation(GizmoMode mode) {
     if (mode == GizmoMode::rotate) return ImGuizmo::ROTATE;
     return mode == GizmoMode::scale ? ImGuizmo::SCALE : ImGuizmo::TRANSLATE;
+}
+
+/// Axes in the colours of the number fields; lines that stay visible on any image.
+void set_style(float scale) {
+    ImGuizmo::Style& style = ImGuizmo::GetStyle();
+    constexpr ImVec4 kAxes[] = {{0.93f, 0.36f, 0.33f, 1}, {0.53f, 0.78f, 0.30f, 1}, {0.34f, 0.60f, 0.96f, 1}};
+    for (int axis = 0; axis < 3; ++axis) {
+        style.Colors[ImGuizmo::DIRECTION_X + axis] = kAxes[axis];
+        ImVec4& plane = style.Colors[ImGuizmo::PLANE_X + axis];
+        plane = kAxes[axis];
+        plane.w = 0.45f;
+    }
+    style.Colors[ImGuizmo::SELECTION] = {theme::kAccent.x, theme::kAccent.y, theme::kAccent.z, 1};
+    style.TranslationLineThickness = style.ScaleLineThickness = 3.5f * scale;
+    style.RotationLineThickness = style.RotationOuterLineThickness = 3 * scale;
+    style.TranslationLineArrowSize = 7 * scale;
+    style.ScaleLineCircleSize = style.CenterCircleSize = 6 * scale;
 }
 
 const char* label(GizmoMode mode) {
@@ -103,6 +121,7 @@ bool Gizmo::draw(Editor& editor, const Vec2& corner, const Vec2& size) {
     const Mat4 view = view_matrix(scene.camera);
     const Mat4 projection = projection_matrix(scene.camera, size.x / size.y);
 
+    set_style(ImGui::GetFontSize() / theme::kFontSize);
     ImGuizmo::SetDrawlist();
     ImGuizmo::SetOrthographic(false);
     ImGuizmo::SetRect(corner.x, corner.y, size.x, size.y);

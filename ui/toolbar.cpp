@@ -52,7 +52,8 @@ void draw_gizmo_modes(ViewSettings& view) {
         const char *icon, *id, *tip;
     };
     constexpr Mode kModes[] = {
-        {GizmoMode::none, icon::kPointer, "select", "Select: click an object, drag to turn around it"},
+        {GizmoMode::none, icon::kPointer, "select",
+         "Select: click an object, click again for its group; drag to turn around"},
         {GizmoMode::translate, icon::kMove, "move", "Move the selected object (G); hold Ctrl for round steps"},
         {GizmoMode::rotate, icon::kRotate, "rotate",
          "Rotate the selected object (R); hold Ctrl for steps of 15 degrees"},
@@ -191,7 +192,8 @@ void draw_status_line(Editor& editor, const glm::ivec2& pixel) {
 
     ImGui::AlignTextToFramePadding();
     ImGui::TextColored(color(phase_color), "%s", phase.c_str());
-    ImGui::SameLine(0, ImGui::GetFontSize());
+    // A column of its own, so that the numbers keep their place when the word changes.
+    ImGui::SameLine(6 * ImGui::GetFontSize());
     if (editor.is_loading()) {
         ImGui::Text("Loading %s", editor.loading_label().c_str());
         ImGui::SameLine(0, ImGui::GetFontSize());

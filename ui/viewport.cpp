@@ -2,6 +2,7 @@
 
 #include "ui/layout.h"
 #include "ui/pixel_values.h"
+#include "ui/theme.h"
 #include "ui/toolbar.h"
 
 #include <fmt/format.h>
@@ -91,7 +92,7 @@ void Viewport::draw_image(Editor& editor, const Vec2& size) {
     request.exposure = editor.view.exposure;
     request.tone_map = editor.view.tone_map;
     if (editor.view.show_outline && editor.selection) {
-        request.outline_width = kOutlineWidth * ImGui::GetFontSize() / 15.5f * canvas_.density;
+        request.outline_width = kOutlineWidth * ImGui::GetFontSize() / theme::kFontSize * canvas_.density;
         request.outlined = with_children(editor.scene(), *editor.selection);
     }
     const Vec2 end = canvas_.corner + size;

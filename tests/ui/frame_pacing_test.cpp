@@ -18,6 +18,16 @@ TEST(FramePacing, InputIsDrawnAtOnce) {
     FrameTiming timing;
     timing.now = timing.last_input = 100;
     timing.last_draw = 90;
+    timing.frames_since_input = 0;
+    EXPECT_EQ(seconds_to_next_frame(timing), 0);
+}
+
+TEST(FramePacing, HoweverSlowAFrameIsAClickIsFollowedByMore) {
+    FrameTiming timing;
+    timing.last_input = 100;
+    timing.last_draw = 100;
+    timing.frames_since_input = 1;
+    timing.now = timing.last_input + 5;
     EXPECT_EQ(seconds_to_next_frame(timing), 0);
 }
 

@@ -1,5 +1,6 @@
 #include "tests/ui/harness.h"
 
+#include "ui/camera_control.h"
 #include "ui/tone_map.h"
 
 #include <gmock/gmock.h>
@@ -8,6 +9,23 @@ namespace rayuela {
 namespace {
 
 constexpr Vec2 kMiddle(0.5f, 0.5f), kSky(0.5f, 0.06f);
+
+TEST(NextSelection, ClimbsThroughTheGroupsAndStartsAgain) {
+    Scene scene;
+    for (std::uint32_t i = 1; i <= 3; ++i) {
+        Object object;
+        object.id = {i};
+        object.parent = {i - 1};
+        if (i < 3) object.shape = ObjectList{};
+        scene.objects.push_back(object);
+    }
+    const ObjectId outer{1}, inner{2}, ball{3}, other{9};
+    EXPECT_EQ(next_selection(scene, {}, ball), ball);
+    EXPECT_EQ(next_selection(scene, other, ball), ball);
+    EXPECT_EQ(next_selection(scene, ball, ball), inner);
+    EXPECT_EQ(next_selection(scene, inner, ball), outer);
+    EXPECT_EQ(next_selection(scene, outer, ball), ball);
+}
 
 class ViewportTest : public UiTest {
 protected:
