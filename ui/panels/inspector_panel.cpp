@@ -112,7 +112,8 @@ bool draw_transform_fields(PanelState& state, Transform& transform, bool rigid) 
     Vec3 scale = transform.scale;
     if (drag_vec3("scale", scale, drag_speed(max_component(glm::abs(scale))), "%.4g",
                   "factor along this axis; with Shift all three together (S in the viewport)")) {
-        for (int axis = 0; axis < 3 && ImGui::GetIO().KeyShift; ++axis) {
+        const bool uniform = ImGui::GetIO().KeyShift && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+        for (int axis = 0; axis < 3 && uniform; ++axis) {
             if (scale[axis] == transform.scale[axis] || transform.scale[axis] == 0) continue;
             scale = transform.scale * (scale[axis] / transform.scale[axis]);
             break;
