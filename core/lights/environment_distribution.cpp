@@ -86,6 +86,7 @@ std::optional<LightSample> EnvironmentDistribution::sample(const Vec2& u) const 
 float EnvironmentDistribution::pdf(const Vec3& wi) const {
     const Image& image = *light_.image();
     const Vec2 position = light_.image_position(wi);
+    if (!(position.x >= 0 && position.y >= 0)) return 0;
     const auto cell = [&](float x, int pixels) {
         const int pixel = std::min(static_cast<int>(x * static_cast<float>(pixels)), pixels - 1);
         return static_cast<std::uint32_t>(pixel / pixels_per_cell_);

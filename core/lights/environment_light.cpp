@@ -6,8 +6,9 @@
 namespace rayuela {
 namespace {
 
-/// Bilinear, repeating across the seam and clamped at the poles. `position` in [0, 1].
+/// Bilinear, repeating across the seam and clamped at the poles. `position` in [0, 1]; NaN gives NaN.
 Color look_up(const Image& image, const Vec2& position) {
+    if (!(position.x >= 0 && position.y >= 0)) return Color(NAN);
     const float x = position.x * static_cast<float>(image.width) - 0.5f;
     const float y = position.y * static_cast<float>(image.height) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);

@@ -146,15 +146,18 @@ TEST(EnvironmentDistribution, IrradianceAgreesWithQuadrature) {
 }
 
 TEST(EnvironmentDistribution, ExtremeNumbersAndBadPixels) {
-    const EnvironmentDistribution distribution{EnvironmentLight(panorama(4, 4, [](int x, int y) {
+    const EnvironmentDistribution distribution{EnvironmentLight(panorama(8, 6, [](int x, int y) {
         return x == 1 ? NAN : y == 2 ? -1.0f : x == 0 ? INFINITY : 1.0f;
     }))};
+    ASSERT_FALSE(distribution.empty());
     for (const float x : {0.0f, 0x1p-32f, 0.5f, 1 - 0x1p-24f}) {
         for (const float y : {0.0f, 0x1p-32f, 0.5f, 1 - 0x1p-24f}) {
             const auto s = distribution.sample(Vec2(x, y));
             EXPECT_TRUE(!s || (is_finite(s->wi) && std::isfinite(s->pdf) && s->pdf > 0));
         }
     }
+    EXPECT_EQ(distribution.pdf(Vec3(NAN)), 0);
+    EXPECT_TRUE(std::isnan(EnvironmentLight(sun(4, 2, 0, 0)).radiance(Vec3(NAN)).x)) << "to be rejected and counted";
     EXPECT_TRUE(EnvironmentDistribution{EnvironmentLight(panorama(4, 2, [](int, int) { return 0.0f; }))}.empty());
 }
 
