@@ -19,7 +19,7 @@ std::uint32_t dimension(int bounce, BounceDimension purpose) {
 }
 
 /// First bounce that Russian roulette may cut where the scene leaves it to the renderer.
-constexpr int kDefaultRouletteStart = 3;
+constexpr int kDefaultRouletteStart = 4;
 /// Throughput below which a path is cut with a probability that grows as it falls. A half costs a tenth to a fifth less
 /// time to a given error on diffuse and on caustic interiors than 1, the usual choice, does.
 constexpr float kRouletteThroughput = 0.5f;
