@@ -1,5 +1,7 @@
 #version 330 core
 // Shows the film: exposure, tone curve, sRGB, outline of what is selected. ui/tone_map.cpp computes the same colours.
+// Compiled once for each use, with the constants TONE_MAP (of ToneMap), SMOOTH_FILM (interpolate between pixels, else show
+// them as squares) and OUTLINE in front: a software rasteriser executes both sides of every branch that is left.
 
 uniform sampler2D film;       // Linear radiance, first row at the top.
 uniform sampler2D selected;   // 1 where the selected object is seen; size of the film, interpolated.
@@ -7,11 +9,8 @@ uniform vec2 target_size;     // Pixels.
 uniform vec2 origin;          // The image's upper left corner in the target, pixels from its upper left.
 uniform vec2 image_size;      // Of the film at full resolution.
 uniform float zoom;           // Target pixels an image pixel.
-uniform float exposure;       // Stops.
-uniform int tone_map;         // ToneMap.
-uniform bool smooth_film;     // Interpolate between pixels, else show them as squares.
-uniform vec4 selected_bounds; // Texels (x0, y0, x1, y1) outside of which `selected` is 0.
-uniform float outline_width;  // Target pixels; 0: none.
+uniform float gain;           // Factor of the exposure.
+uniform float outline_width;  // Target pixels.
 uniform vec3 outline_color;   // sRGB.
 uniform vec3 background;      // sRGB.
 uniform float checker_size;   // Target pixels.
@@ -68,20 +67,20 @@ vec3 srgb(vec3 linear) {
 }
 
 vec3 displayed(vec3 radiance) {
-    vec3 light = radiance * exp2(exposure);
-    if (any(isnan(light)) || any(isinf(light))) return vec3(0.0);
+    vec3 light = radiance * gain;
+    if (!all(lessThan(abs(light), vec3(3.4e38)))) light = vec3(0.0);
     light = max(light, 0.0);
-    if (tone_map == 4) return false_color(light);
-    if (tone_map == 1) light = aces(light);
-    if (tone_map == 2) light = agx(light);
-    if (tone_map == 3) light = filmic(light);
+    if (TONE_MAP == 4) return false_color(light);
+    if (TONE_MAP == 1) light = aces(light);
+    if (TONE_MAP == 2) light = agx(light);
+    if (TONE_MAP == 3) light = filmic(light);
     return srgb(clamp(light, 0.0, 1.0));
 }
 
 // The film around a position in texels.
 vec3 film_at(vec2 texel) {
     ivec2 last = textureSize(film, 0) - 1;
-    if (!smooth_film) return texelFetch(film, clamp(ivec2(floor(texel)), ivec2(0), last), 0).rgb;
+    if (!SMOOTH_FILM) return texelFetch(film, clamp(ivec2(floor(texel)), ivec2(0), last), 0).rgb;
     vec2 corner = texel - 0.5;
     ivec2 low = ivec2(floor(corner));
     vec2 weight = corner - floor(corner);
@@ -95,7 +94,7 @@ vec3 film_at(vec2 texel) {
 // Where one target pixel covers several texels, their mean.
 vec3 filtered_film(vec2 texel, float texels) {
     int taps = clamp(int(ceil(texels)), 1, 4);
-    if (taps == 1) return film_at(texel);
+    if (!SMOOTH_FILM || taps == 1) return film_at(texel);
     vec3 sum = vec3(0.0);
     for (int y = 0; y < taps; ++y) {
         for (int x = 0; x < taps; ++x) {
@@ -106,15 +105,13 @@ vec3 filtered_film(vec2 texel, float texels) {
 }
 
 bool is_selected(vec2 texel) {
-    if (any(lessThan(texel, selected_bounds.xy)) || any(greaterThanEqual(texel, selected_bounds.zw))) return false;
     return textureLod(selected, texel / vec2(textureSize(selected, 0)), 0.0).r > 0.5;
 }
 
 // How much of the outline covers a position just outside the selected object.
 float outline(vec2 texel, float texels) {
-    float reach = outline_width * texels;
-    if (any(lessThan(texel, selected_bounds.xy - reach)) || any(greaterThan(texel, selected_bounds.zw + reach))) return 0.0;
     if (is_selected(texel)) return 0.0;
+    float reach = outline_width * texels;
     float neighbours = 0.0;
     for (int i = 0; i < 12; ++i) {
         float angle = 0.5235988 * float(i);
@@ -135,6 +132,6 @@ void main() {
     vec2 texel = pixel * texels_per_pixel;
     float texels = texels_per_pixel.x / zoom;
     vec3 shown = displayed(filtered_film(texel, texels));
-    if (outline_width > 0.0) shown = mix(shown, outline_color, outline(texel, texels));
+    if (OUTLINE) shown = mix(shown, outline_color, outline(texel, texels));
     color = vec4(shown, 1.0);
 }

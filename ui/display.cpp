@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 namespace rayuela {
@@ -19,12 +20,15 @@ constexpr float kSquarePixelZoom = 1.999f;
 constexpr Vec3 kBackground{0.066f, 0.070f, 0.075f};
 constexpr float kCheckerSize = 12;
 
-unsigned compile(GLenum kind, std::string_view name) {
+/// `constants` goes below the first line, which is the version.
+unsigned compile(GLenum kind, std::string_view name, const std::string& constants) {
     const std::string_view text = embedded_shader(name);
+    const std::size_t first_line = text.find('\n') + 1;
+    const char* const parts[] = {text.data(), constants.data(), text.data() + first_line};
+    const int lengths[] = {static_cast<int>(first_line), static_cast<int>(constants.size()),
+                           static_cast<int>(text.size() - first_line)};
     const unsigned shader = glCreateShader(kind);
-    const char* const data = text.data();
-    const int length = static_cast<int>(text.size());
-    glShaderSource(shader, 1, &data, &length);
+    glShaderSource(shader, 3, parts, lengths);
     glCompileShader(shader);
     int compiled = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
@@ -36,9 +40,9 @@ unsigned compile(GLenum kind, std::string_view name) {
     return shader;
 }
 
-unsigned link_program() {
-    const unsigned vertex = compile(GL_VERTEX_SHADER, "display.vert");
-    const unsigned fragment = compile(GL_FRAGMENT_SHADER, "display.frag");
+unsigned link_program(const std::string& constants) {
+    const unsigned vertex = compile(GL_VERTEX_SHADER, "display.vert", "");
+    const unsigned fragment = compile(GL_FRAGMENT_SHADER, "display.frag", constants);
     const unsigned program = glCreateProgram();
     glAttachShader(program, vertex);
     glAttachShader(program, fragment);
@@ -62,10 +66,7 @@ unsigned make_texture(int filter) {
 }  // namespace
 
 Display::Display()
-    : program_(link_program()),
-      film_(make_texture(GL_NEAREST)),
-      mask_(make_texture(GL_LINEAR)),
-      target_(make_texture(GL_NEAREST)) {
+    : film_(make_texture(GL_NEAREST)), mask_(make_texture(GL_LINEAR)), target_(make_texture(GL_NEAREST)) {
     glGenVertexArrays(1, &vertex_array_);
     glGenFramebuffers(1, &framebuffer_);
 }
@@ -75,7 +76,19 @@ Display::~Display() {
     glDeleteTextures(3, textures);
     glDeleteFramebuffers(1, &framebuffer_);
     glDeleteVertexArrays(1, &vertex_array_);
-    glDeleteProgram(program_);
+    for (const auto& [use, program] : programs_) {
+        glDeleteProgram(program);
+    }
+}
+
+unsigned Display::program(ToneMap tone_map, bool smooth, bool outline) {
+    unsigned& program = programs_[{tone_map, smooth, outline}];
+    if (!program) {
+        program = link_program(
+            fmt::format("const int TONE_MAP = {};\nconst bool SMOOTH_FILM = {};\nconst bool OUTLINE = {};\n",
+                        static_cast<int>(tone_map), smooth, outline));
+    }
+    return program;
 }
 
 unsigned Display::draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request) {
@@ -162,36 +175,52 @@ void Display::draw_film(const Frame& frame, const DisplayRequest& request) {
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, mask_);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, film_);
+    glBindVertexArray(vertex_array_);
 
-    const auto at = [this](const char* name) { return glGetUniformLocation(program_, name); };
+    draw_triangle(frame, request, false);
+    const bool outlines = request.outline_width > 0 && !request.outlined.empty() && mask_size_ == film_size_;
+    if (outlines && frame.scene) {
+        // Once more, and only around the outline, which is costly for a software rasteriser.
+        const Vec2 texel = Vec2(frame.scene->film.width, frame.scene->film.height) / Vec2(film_size_) * request.zoom;
+        const Vec2 margin(request.outline_width + 1);
+        const glm::ivec2 low(glm::floor(request.origin + Vec2(mask_bounds_.x, mask_bounds_.y) * texel - margin));
+        const glm::ivec2 high(glm::ceil(request.origin + Vec2(mask_bounds_.z, mask_bounds_.w) * texel + margin));
+        const glm::ivec2 extent = glm::max(high - low, 0);
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(low.x, request.size.y - high.y, extent.x, extent.y);
+        draw_triangle(frame, request, true);
+        glDisable(GL_SCISSOR_TEST);
+    }
+    glBindVertexArray(0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<unsigned>(outer));
+    ++statistics_.draws;
+}
+
+void Display::draw_triangle(const Frame& frame, const DisplayRequest& request, bool outline) {
     const bool has_film = frame.scene && !frame.image.pixels.empty();
     const Vec2 image_size = has_film ? Vec2(frame.scene->film.width, frame.scene->film.height) : Vec2(0);
-    const bool outlines = request.outline_width > 0 && !request.outlined.empty() && mask_size_ == film_size_;
-    glUseProgram(program_);
+    // Where pixels of film and target coincide there is nothing to interpolate.
+    const bool coincide = request.zoom == 1 && image_size == Vec2(film_size_);
+    const bool smooth = !coincide && (frame.coarse || request.zoom < kSquarePixelZoom);
+    const unsigned used = program(request.tone_map, smooth, outline);
+    const auto at = [used](const char* name) { return glGetUniformLocation(used, name); };
+    glUseProgram(used);
     glUniform1i(at("film"), 0);
     glUniform1i(at("selected"), 1);
     glUniform2f(at("target_size"), static_cast<float>(request.size.x), static_cast<float>(request.size.y));
     glUniform2f(at("origin"), request.origin.x, request.origin.y);
     glUniform2f(at("image_size"), image_size.x, image_size.y);
     glUniform1f(at("zoom"), request.zoom);
-    glUniform1f(at("exposure"), request.exposure);
-    glUniform1i(at("tone_map"), static_cast<int>(request.tone_map));
-    glUniform1i(at("smooth_film"), frame.coarse || request.zoom < kSquarePixelZoom);
-    glUniform4f(at("selected_bounds"), static_cast<float>(mask_bounds_.x), static_cast<float>(mask_bounds_.y),
-                static_cast<float>(mask_bounds_.z), static_cast<float>(mask_bounds_.w));
-    glUniform1f(at("outline_width"), outlines ? request.outline_width : 0);
+    glUniform1f(at("gain"), std::exp2(request.exposure));
+    glUniform1f(at("outline_width"), request.outline_width);
     glUniform3f(at("outline_color"), theme::kAccent.x, theme::kAccent.y, theme::kAccent.z);
     glUniform3f(at("background"), kBackground.x, kBackground.y, kBackground.z);
     glUniform1f(at("checker_size"), kCheckerSize);
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_2D, mask_);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, film_);
-    glBindVertexArray(vertex_array_);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glBindVertexArray(0);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<unsigned>(outer));
-    ++statistics_.draws;
 }
 
 std::vector<ObjectId> with_children(const Scene& scene, ObjectId id) {

@@ -3,7 +3,9 @@
 #include "core/render/frame.h"
 #include "ui/view_settings.h"
 
+#include <map>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 namespace rayuela {
@@ -46,7 +48,12 @@ private:
     void resize_target(glm::ivec2 size);
     void draw_film(const Frame& frame, const DisplayRequest& request);
 
-    unsigned program_ = 0, vertex_array_ = 0;
+    void draw_triangle(const Frame& frame, const DisplayRequest& request, bool outline);
+    /// The program for one use of display.frag, compiled when it is first needed.
+    unsigned program(ToneMap tone_map, bool smooth, bool outline);
+
+    std::map<std::tuple<ToneMap, bool, bool>, unsigned> programs_;
+    unsigned vertex_array_ = 0;
     unsigned film_ = 0, mask_ = 0;
     unsigned target_ = 0, framebuffer_ = 0;
     glm::ivec2 film_size_{0}, mask_size_{0}, target_size_{0};

@@ -25,10 +25,13 @@ template <typename Draw>
 void strip(const char* id, float height, const Draw& draw) {
     const float unit = ImGui::GetFontSize();
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.45f * unit, 0.25f * unit));
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyleColorVec4(ImGuiCol_WindowBg));
+    ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, 0);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
     if (ImGui::BeginChild(id, {0, height}, ImGuiChildFlags_AlwaysUseWindowPadding, flags)) draw();
     ImGui::EndChild();
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
 }
 
 void draw_centered(const Canvas& canvas, float line, const std::string& text, ImGuiCol color) {
@@ -48,9 +51,10 @@ void Viewport::draw(Editor& editor) {
     ImGui::SetNextWindowClass(&window_class);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
-    const bool visible = ImGui::Begin(kViewportName, nullptr,
-                                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
-                                          ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+    const bool visible =
+        ImGui::Begin(kViewportName, nullptr,
+                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground |
+                         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
     ImGui::PopStyleVar(2);
     if (visible) {
         const float height = std::round(ImGui::GetFrameHeight() + 0.5f * ImGui::GetFontSize());
