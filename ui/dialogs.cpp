@@ -111,7 +111,7 @@ void draw_shortcuts(Editor& editor) {
 
 void draw_quick_start(Editor& editor) {
     if (!editor.panels.show_quick_start) return;
-    place_in_center(36, 27);
+    place_in_center(38, 32);
     if (ImGui::Begin("Quick start", &editor.panels.show_quick_start, kWindowFlags)) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextUnformatted(

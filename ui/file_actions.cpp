@@ -115,12 +115,13 @@ void environment_dialog(Editor& editor) {
 
 void draw_file_dialog(Editor& editor) {
     if (!editor.file_dialog.is_open()) return;
-    std::vector<fs::path> places;
-    if (const char* home = std::getenv("HOME")) places.emplace_back(home);
-    if (const fs::path assets = assets_folder(); !assets.empty()) places.push_back(assets / "scenes");
+    std::vector<FileDialog::Place> places;
+    if (const char* home = std::getenv("HOME")) places.push_back({"Home", home});
+    if (const fs::path assets = assets_folder(); !assets.empty()) places.push_back({"Examples", assets / "scenes"});
     for (const std::string& file : editor.preferences.recent_files) {
         const fs::path folder = fs::path(file).parent_path();
-        if (std::ranges::find(places, folder) == places.end()) places.push_back(folder);
+        if (std::ranges::find(places, folder, &FileDialog::Place::folder) != places.end()) continue;
+        places.push_back({folder.filename().string(), folder});
     }
     editor.file_dialog.draw(places);
 }

@@ -123,7 +123,7 @@ void FileDialog::close() {
     ImGui::CloseCurrentPopup();
 }
 
-void FileDialog::draw(const std::vector<fs::path>& places) {
+void FileDialog::draw(const std::vector<Place>& places) {
     if (!open_) return;
     if (opening_) ImGui::OpenPopup(kPopup);
     const float font = ImGui::GetFontSize();
@@ -173,13 +173,12 @@ void FileDialog::draw_path() {
     tooltip("Shows only names that contain this.");
 }
 
-void FileDialog::draw_places(const std::vector<fs::path>& places) {
+void FileDialog::draw_places(const std::vector<Place>& places) {
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::string name = i == 0 && places[i] == expanded("~") ? "Home" : places[i].filename().string();
-        if (ImGui::Selectable(fmt::format("{}  {}##place{}", icon::kGroup, name, i).c_str(), places[i] == folder_)) {
-            enter(places[i]);
-        }
-        tooltip(places[i].string());
+        const Place& place = places[i];
+        const std::string label = fmt::format("{}  {}##place{}", icon::kGroup, place.name, i);
+        if (ImGui::Selectable(label.c_str(), place.folder == folder_)) enter(place.folder);
+        tooltip(place.folder.string());
     }
     ImGui::Separator();
     if (ImGui::Checkbox("Hidden files", &show_hidden_)) enter(folder_);

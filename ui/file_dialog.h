@@ -20,11 +20,17 @@ public:
         std::function<void(const std::filesystem::path&)> chosen = {};
     };
 
+    /// A folder that is offered beside the list.
+    struct Place {
+        std::string name;
+        std::filesystem::path folder;
+    };
+
     /// Starts in `folder`, or where the last one was left if that is empty.
     void open(Request request, const std::filesystem::path& folder = {});
     bool is_open() const { return open_; }
-    /// Once a frame. `places` are offered beside the list.
-    void draw(const std::vector<std::filesystem::path>& places);
+    /// Once a frame.
+    void draw(const std::vector<Place>& places);
 
 private:
     struct Item {
@@ -36,7 +42,7 @@ private:
 
     void enter(std::filesystem::path folder);
     void draw_path();
-    void draw_places(const std::vector<std::filesystem::path>& places);
+    void draw_places(const std::vector<Place>& places);
     void draw_items();
     void draw_footer();
     void accept();

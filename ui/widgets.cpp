@@ -150,7 +150,10 @@ void set_value_width(const FieldActions& actions) {
 }  // namespace
 
 void tooltip(std::string_view text) {
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_ForTooltip | ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    // Not for an item that the keyboard has reached: its tooltip would hide what is next to it.
+    constexpr ImGuiHoveredFlags kFlags =
+        ImGuiHoveredFlags_ForTooltip | ImGuiHoveredFlags_AllowWhenDisabled | ImGuiHoveredFlags_NoNavOverride;
+    if (!ImGui::IsItemHovered(kFlags)) return;
     if (!ImGui::BeginTooltip()) return;
     ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
     ImGui::TextUnformatted(text.data(), text.data() + text.size());

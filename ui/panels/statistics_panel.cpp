@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <implot.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rayuela {
@@ -140,12 +141,15 @@ void draw_plot(Editor& editor, float width) {
     tooltip("Plots the error against seconds of rendering.");
     const float height = std::max(6 * ImGui::GetFontSize(), ImGui::GetContentRegionAvail().y - 2);
     const std::vector<double>& xs = over_time ? history.seconds : history.samples;
+    ImPlot::PushStyleVar(ImPlotStyleVar_PlotPadding, {6, 4});
+    ImPlot::PushStyleVar(ImPlotStyleVar_LabelPadding, {4, 2});
     if (ImPlot::BeginPlot("##convergence", {width, height},
                           ImPlotFlags_NoLegend | ImPlotFlags_NoMenus | ImPlotFlags_NoMouseText)) {
-        const ImPlotAxisFlags flags = ImPlotAxisFlags_AutoFit | ImPlotAxisFlags_NoHighlight;
-        ImPlot::SetupAxes(nullptr, nullptr, flags, flags);
+        const auto [lowest, highest] = std::ranges::minmax(history.error);
+        ImPlot::SetupAxes(nullptr, nullptr, ImPlotAxisFlags_NoHighlight, ImPlotAxisFlags_NoHighlight);
         ImPlot::SetupAxisScale(ImAxis_X1, ImPlotScale_Log10);
         ImPlot::SetupAxisScale(ImAxis_Y1, ImPlotScale_Log10);
+        ImPlot::SetupAxesLimits(xs.front(), xs.back(), 0.8 * lowest, 1.25 * highest, ImPlotCond_Always);
         const int count = static_cast<int>(xs.size());
         // The slope that independent samples have, through the newest point.
         const double guide_x[] = {xs.front(), xs.back()};
@@ -158,6 +162,7 @@ void draw_plot(Editor& editor, float width) {
                 "%s", "The grey line is the slope of independent samples: half the error for twice the samples.");
         ImPlot::EndPlot();
     }
+    ImPlot::PopStyleVar(2);
     ImGui::EndGroup();
 }
 
