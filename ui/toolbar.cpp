@@ -206,6 +206,7 @@ void draw_status_line(Editor& editor, const glm::ivec2& pixel) {
         fmt::format("{} spp     {} x {}     {}     {} samples/s", statistics.spp, film.width, film.height,
                     duration_text(statistics.render_seconds), count_text(statistics.samples_per_second));
     if (statistics.estimated_error > 0) text += fmt::format("     error {:.2g}", statistics.estimated_error);
+    if (!editor.view.fit) text += fmt::format("     zoom {:.0f} %", 100 * editor.view.zoom);
     ImGui::TextUnformatted(text.c_str());
     tooltip(
         "Samples in every pixel, size of the image, rendering time, speed and estimated relative mean squared error");
