@@ -1,0 +1,14 @@
+#include "core/io/scene_writer.h"
+#include "tests/fuzz/build_scene.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace rayuela;
+    const auto loaded = scene_from_json({reinterpret_cast<const char*>(data), size}, "/nowhere", "fuzz.scene.json");
+    if (!loaded) return 0;
+    build_and_trace(loaded->scene);
+    const auto text = scene_to_json(loaded->scene, "/nowhere");
+    if (!text) std::abort();
+    const auto again = scene_from_json(*text, "/nowhere", "again.scene.json");
+    if (!again || !(again->scene == loaded->scene)) std::abort();
+    return 0;
+}
