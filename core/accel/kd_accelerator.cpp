@@ -1,6 +1,6 @@
 #include "core/accel/kd_accelerator.h"
 
-#include <tbb/parallel_for.h>
+#include "core/accel/parallel.h"
 
 #include <algorithm>
 #include <chrono>
@@ -49,8 +49,9 @@ bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& co
     control.total += objects_.size();
 
     std::vector<std::shared_ptr<const MeshTree>> built(missing.size());
-    tbb::parallel_for(std::size_t{0}, missing.size(),
-                      [&](std::size_t i) { built[i] = build_mesh_tree(missing[i], settings_, control); });
+    parallel_ranges(missing.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) built[i] = build_mesh_tree(missing[i], settings_, control);
+    });
     if (control.cancelled || std::count(built.begin(), built.end(), nullptr) > 0) return false;
     mesh_trees_.insert(mesh_trees_.end(), built.begin(), built.end());
 

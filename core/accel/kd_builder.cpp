@@ -1,8 +1,7 @@
 #include "core/accel/kd_builder.h"
 
 #include "core/accel/kd_cut.h"
-
-#include <tbb/task_group.h>
+#include "core/accel/parallel.h"
 
 #include <algorithm>
 #include <utility>
@@ -78,10 +77,8 @@ public:
         references.resize(above);
 
         Subtree tree_below, tree_above;
-        tbb::task_group group;
-        group.run([&, task_below = task_below] { tree_below = build_task(std::move(below), task_below); });
-        tree_above = build_task(std::move(references), task_above);
-        group.wait();
+        fork_join([&, task_below = task_below] { tree_below = build_task(std::move(below), task_below); },
+                  [&, task_above = task_above] { tree_above = build_task(std::move(references), task_above); });
         if (control_.cancelled) return tree;
         return join(cut->axis, cut->plane, std::move(tree_below), std::move(tree_above));
     }

@@ -1,7 +1,6 @@
 #include "core/accel/mesh_tree.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "core/accel/parallel.h"
 
 #include <algorithm>
 
@@ -10,9 +9,9 @@ namespace {
 
 std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildControl& control) {
     std::vector<Bounds3> bounds(mesh.triangles.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bounds.size(), 4096), [&](const auto& range) {
+    parallel_ranges(bounds.size(), 4096, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled) return;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             const glm::uvec3& t = mesh.triangles[i];
             const Vec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
             // min and max drop a NaN; the build drops what is not finite.
@@ -41,9 +40,9 @@ std::unique_ptr<float[]> make_leaf_data(const TriangleMesh& mesh, const KdTree& 
     const std::size_t size = MeshTree::kRuns * tree.references.size();
     auto data = std::make_unique_for_overwrite<float[]>(size + MeshTree::kPadding);
     std::fill_n(data.get() + size, MeshTree::kPadding, 0.0f);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 1024), [&](const auto& range) {
+    parallel_ranges(tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled) return;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             const KdNode& node = tree.nodes[i];
             if (!node.is_leaf() || node.count() == 0) continue;
             write_leaf(mesh, std::span(tree.references).subspan(node.first(), node.count()),

@@ -1,6 +1,7 @@
 #include "tests/support/accel_scenes.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <bit>
 
@@ -146,6 +147,21 @@ TEST(KdVersusList, FarFromTheOriginAndAtEveryScale) {
             expect_same_as_list(instances, rays, {1, 16});
         }
     }
+}
+
+/// SSE2 to AVX-512, whatever this machine has.
+TEST(KdVersusList, EachInstructionSetGivesTheSame) {
+    const auto instances = make_scene(41, 20, 300);
+    const auto rays = make_rays(instances, 3000, 42);
+    const std::int64_t supported = hwy::SupportedTargets();
+    int sets = 0;
+    for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
+        hwy::GetChosenTarget().Update(rest & -rest);
+        expect_same_as_list(instances, rays, {1, 5, 16, 100});
+        ++sets;
+    }
+    hwy::GetChosenTarget().Update(supported);
+    EXPECT_GE(sets, 1);
 }
 
 TEST(KdVersusList, StrangeRaysMissOrAgree) {
