@@ -164,8 +164,8 @@ void Editor::finish(Load& load) {
     Result<Loaded> loaded = load.result.get();
     Result<Scene> next = loaded ? loaded->change(scene()) : tl::unexpected(loaded.error());
     if (!next) {
+        log.add(LogLevel::info, load.label + " failed; the scene is unchanged.");
         log.add(LogLevel::error, next.error());
-        log.add(LogLevel::error, load.label + " failed; the scene is unchanged.");
         return;
     }
     log.add(LogLevel::warning, loaded->warnings);

@@ -176,8 +176,8 @@ void draw_statistics_panel(Editor& editor) {
     const RenderStatistics& statistics = editor.frame()->statistics;
     const float available = ImGui::GetContentRegionAvail().x, spacing = ImGui::GetStyle().ItemSpacing.x;
     // Side by side where there is room, as at the bottom of the window; else one below the other.
-    const bool wide = available > 45 * ImGui::GetFontSize();
-    const float column = wide ? (available - 4 * spacing) * 0.28f : available;
+    const bool wide = available > 38 * ImGui::GetFontSize();
+    const float column = wide ? (available - 4 * spacing) * 0.3f : available;
     draw_rendering(statistics, column);
     if (wide) ImGui::SameLine(0, 2 * spacing);
     draw_structure(statistics, column);
