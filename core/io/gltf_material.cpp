@@ -83,8 +83,6 @@ Color color(const std::vector<double>& values, const Color& fallback) {
 
 /// Brings every number of the material into the range of its field.
 void clamp_fields(Principled& material, Context& context, const std::string& place) {
-    const Principled standard;
-    std::vector<std::pair<std::string, float>> defaults;
     const auto clamp = [&](float& value, const Field& field) {
         const float clamped =
             std::isfinite(value) ? glm::clamp(value, field.min, field.max) : std::max(field.min, 0.0f);

@@ -13,9 +13,9 @@ void tell_type(ProblemList& problems, std::string place, std::string_view expect
 }
 
 JsonObject::JsonObject(const Json& json, std::string place, ProblemList& list)
-    : problems(list), object_(json.get<Json::Object>()), place_(std::move(place)), valid_(object_ != nullptr) {
+    : problems(list), object_(json.get<Json::Object>()), place_(std::move(place)) {
     static const Json::Object kEmpty;
-    if (valid_) return;
+    if (object_) return;
     object_ = &kEmpty;
     wrong_type(place_, "an object", json);
 }

@@ -57,7 +57,6 @@ private:
     const Json::Object* object_ = nullptr;
     std::string place_;
     std::vector<std::string_view> known_;
-    bool valid_;
 };
 
 /// "must be a number, is a text".

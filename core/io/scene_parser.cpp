@@ -327,13 +327,11 @@ void SceneParser::member(const Json& json, const std::string& place, const Field
 }
 
 std::shared_ptr<const Image> SceneParser::texture(JsonObject& object, ColorDecoding decoding) {
-    const auto* file = object.take_as<std::string>("texture", "a text");
-    if (!file) {
-        if (problems_.problems.empty() || problems_.problems.back().place != object.place("texture")) {
-            problems_.add(object.place("texture"), "is missing");
-        }
-        return nullptr;
-    }
+    const Json* json = object.take("texture");
+    const auto* file = json ? json->get<std::string>() : nullptr;
+    if (!json) problems_.add(object.place("texture"), "is missing");
+    if (json && !file) tell_type(problems_, object.place("texture"), "a text", *json);
+    if (!file) return nullptr;
     auto image = cache_.image(absolute(*file), decoding, &warnings_);
     if (image) return *image;
     tell(image.error(), object.place("texture"));

@@ -106,6 +106,7 @@ private:
     Json::Object fields(const T& value, const std::string& place) {
         const T standard;
         Json::Object members;
+        // The same member of both is the one with the same key.
         T::visit_fields(value, [&](const auto& member, const Field& field) {
             T::visit_fields(standard, [&](const auto& other, const Field& other_field) {
                 if constexpr (std::is_same_v<decltype(member), decltype(other)>) {
