@@ -106,7 +106,7 @@ Surface surface_of(const Box& box, const GeometryInstance& instance, const Ray& 
     Surface surface;
     surface.p = baked ? p : to_world.point(p);
     surface.ng = baked ? n : NormalTransform(to_world)(n);
-    surface.size = max_abs(surface.p) + max_abs(to_world.translation) + max_abs(to_world.vector(p));
+    surface.size = max_abs(surface.p) + max_abs(to_world.translation) + max_abs(baked ? p : to_world.vector(p));
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
     const auto across = [&](int k) { return hi[k] > lo[k] ? (p[k] - lo[k]) / (hi[k] - lo[k]) : 0.0; };
     surface.uv = Vec2(across(a), across(b));

@@ -111,6 +111,23 @@ TEST(Determinism, CompanyInABatchDoesNotMatter) {
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(shuffled.radiance[i], ordered.radiance[order[i]]);
 }
 
+/// Powers of two scale every number exactly, so nothing in the renderer may know how large a metre is.
+TEST(Determinism, ScaleDoesNotChangeTheImage) {
+    const Scene scene = mixed_scene(kWidth, kHeight);
+    const auto expected = means(render(scene, kSamples)->film());
+    for (const float scale : {0x1p-20f, 0x1p-3f, 0x1p20f}) {
+        Scene scaled = scene;
+        scaled.camera.position *= scale;
+        scaled.camera.target *= scale;
+        scaled.camera.focus_distance *= scale;
+        for (Object& object : scaled.objects) {
+            object.transform.translate *= scale;
+            object.transform.scale *= scale;
+        }
+        EXPECT_EQ(means(render(scaled, kSamples)->film()), expected) << "scale " << scale;
+    }
+}
+
 TEST(Determinism, SeedsAndSamplersGiveDifferentNoise) {
     Scene scene = mixed_scene(kWidth, kHeight);
     const auto first = means(render(scene, 1)->film());
