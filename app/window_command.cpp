@@ -36,8 +36,9 @@ Result<void> run_screenshot(const ScreenshotOptions& options) {
     Application application(std::move(*context), Preferences{.first_start = false}, options.threads);
     Editor& editor = application.editor();
     editor.open(options.scene);
-    Image image = application.screenshot(options.spp);
+    while (editor.is_loading()) application.draw_frame();
     if (editor.file() != options.scene) return tl::unexpected(errors_of(editor.log));
+    Image image = application.screenshot(options.spp);
     for (Vec4& pixel : image.pixels) {
         for (int channel = 0; channel < 3; ++channel) pixel[channel] = linear_from_srgb(pixel[channel]);
     }
