@@ -1,7 +1,10 @@
 #include "app/subcommands.h"
 
 #include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <map>
 
 namespace rayuela {
 
@@ -35,9 +38,18 @@ void add_threads(CLI::App& command, int& threads) {
 template <typename T>
 void add_choice(CLI::App& command, const std::string& flag, std::optional<T>& value,
                 const std::map<std::string, T>& names, const std::string& help) {
-    command.add_option(flag, value, help)
-        ->transform(CLI::CheckedTransformer(names).description(""))
-        ->type_name(fmt::format("{}", fmt::join(CLI::detail::generate_map(names, true), "")));
+    const auto store = [&value, names](const std::string& name) { value = names.at(name); };
+    command.add_option_function<std::string>(flag, store, help)->check(CLI::IsMember(names));
+}
+
+/// Seconds above 0; unlike CLI::PositiveNumber it refuses what is not a number.
+CLI::Validator positive_time() {
+    const auto check = [](const std::string& text) -> std::string {
+        double seconds = 0;
+        const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0 && std::isfinite(seconds);
+        return good ? "" : fmt::format("\"{}\" is not a time above 0", text);
+    };
+    return CLI::Validator(check, "SECONDS");
 }
 
 void add_render(CLI::App& app, RenderOptions& options) {
@@ -46,7 +58,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
     command.add_option("scene", options.scene, "Scene: .scene.json, .gltf, .glb, .obj or .ply")->required();
     command.add_option("-o,--output", options.output, "Image: .png, .exr, .pfm or .hdr")->required();
     command.add_option("--spp", overrides.spp, "Stop at so many samples a pixel")->check(CLI::Range(1, 1 << 30));
-    command.add_option("--time", overrides.seconds, "Stop after so many seconds")->check(CLI::PositiveNumber);
+    command.add_option("--time", overrides.seconds, "Stop after so many seconds")->check(positive_time());
     add_size(command, "Size of the image", [&overrides](glm::ivec2 size) { overrides.size = size; });
     command.add_option("--seed", overrides.seed, "Seed of the sampler");
     add_threads(command, options.threads);

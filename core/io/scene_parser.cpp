@@ -26,10 +26,12 @@ Result<LoadedScene> SceneParser::run(const Json& json) {
     JsonObject root(json, "", problems_);
     if (!problems_.problems.empty()) return tl::unexpected(problems_.problems);
     const Json* version = root.take("rayuela");
-    if (!version || !version->get<double>() || *version->get<double>() != kSceneFormatVersion) {
-        problems_.add("rayuela",
-                      version ? fmt::format("this format version is not supported, known is {}", kSceneFormatVersion)
-                              : "the format version is missing");
+    const double* number = version ? version->get<double>() : nullptr;
+    if (!number || *number != kSceneFormatVersion) {
+        const std::string found = !version ? "missing"
+                                  : number ? fmt::to_string(*number)
+                                           : std::string(version->type_name());
+        problems_.add("rayuela", fmt::format("the format version must be {}, is {}", kSceneFormatVersion, found));
         return tl::unexpected(problems_.problems);
     }
     const auto part = [&](const char* key, void (SceneParser::*read)(const Json&)) {
