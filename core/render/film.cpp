@@ -37,9 +37,10 @@ void Film::add(std::size_t pixel, std::uint32_t sample, const Color& radiance) {
     Pixel& p = pixels_[pixel];
     const Vec3d value(radiance);
     const double y = luminance(value);
-    p.sum[sample & 1] += value;
+    const std::uint32_t half = sample_half(sample);
+    p.sum[half] += value;
     p.luminance_squared += y * y;
-    ++p.count[sample & 1];
+    ++p.count[half];
 }
 
 void Film::clear_rejected() {
@@ -81,9 +82,9 @@ double Film::relative_error() const {
                 continue;
             }
             const Vec3d difference = p.sum[0] / na - p.sum[1] / nb;
+            const Vec3d square = difference * difference * (na * nb / ((na + nb) * (na + nb)));
             const Vec3d m = mean(i);
-            const Vec3d error =
-                difference * difference * (na * nb / ((na + nb) * (na + nb))) / (m * m + kDarkRegularizer);
+            const Vec3d error = square / (m * m + kDarkRegularizer);
             sum.error += (error.x + error.y + error.z) / 3;
         }
         return sum;

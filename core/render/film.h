@@ -5,12 +5,13 @@
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <optional>
 #include <vector>
 
 namespace rayuela {
 
-/// Sums of the samples of each pixel in double precision, in two halves (even and odd samples). Different pixels may be
+/// Sums of the samples of each pixel in double precision, in two halves (see sample_half). Different pixels may be
 /// added to from different threads; the sums of a pixel depend only on the order of its own samples.
 class Film {
 public:
@@ -37,8 +38,9 @@ public:
     Image image() const;
     /// Estimate of the mean over pixels and channels of (mean - truth)^2 / (truth^2 + 0.01). The halves A and B of nA and
     /// nB samples have the same expectation, so E[(A - B)^2] = s^2 (1/nA + 1/nB) and the mean's error, s^2 / (nA + nB), is
-    /// expected to be (A - B)^2 nA nB / (nA + nB)^2: without bias for independent samples; stratified ones, whose
-    /// halves complement each other, err less than it says. 0 while a pixel has an empty half.
+    /// expected to be (A - B)^2 nA nB / (nA + nB)^2: without bias for independent samples. Two limits: stratified
+    /// samples, whose halves complement each other, err less than it says; and as truth^2 is taken from the mean, a pixel
+    /// with a rare bright sample errs more. 0 while a pixel has an empty half.
     double relative_error() const;
 
     std::array<std::uint64_t, kRejectionCount> rejected() const;
@@ -54,6 +56,14 @@ private:
     std::vector<Pixel> pixels_;
     std::array<std::atomic<std::uint64_t>, kRejectionCount> rejected_{};
 };
+
+/// The half of the film that a sample is added to: of the samples from 2^k to 2^(k+1) the first 2^(k-1) go to one, the
+/// others to the other. Whole blocks of a low-discrepancy sequence stay together, so that each half is stratified nearly as
+/// well as the whole is; even and odd samples would each be as noisy as independent ones.
+constexpr std::uint32_t sample_half(std::uint32_t sample) {
+    const int octave = std::bit_width(sample) - 1;
+    return octave < 1 ? sample : (sample >> (octave - 1)) & 1;
+}
 
 /// Why a sample of this radiance cannot be added, if so.
 std::optional<Rejection> rejection(const Color& radiance);

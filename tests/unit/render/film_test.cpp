@@ -1,5 +1,7 @@
 #include "core/render/film.h"
 
+#include "core/math/sampler.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -82,6 +84,31 @@ TEST(Film, EstimatedErrorsAreUnbiased) {
     EXPECT_NEAR(variance_sum / (kSide * kSide) / variance_of_mean, 1, 0.03);
     // 1 / (mean^2 + 0.01) varies with the mean: its expectation is 1 + 3 Var(mean) to second order.
     EXPECT_NEAR(film.relative_error() / (variance_of_mean / 1.01), 1 + 3 * variance_of_mean, 0.08);
+}
+
+TEST(Film, HalvesTakeTurnsInBlocks) {
+    std::string halves;
+    for (std::uint32_t i = 0; i < 16; ++i) halves += sample_half(i) ? 'B' : 'A';
+    EXPECT_EQ(halves, "ABABAABBAAAABBBB");
+}
+
+/// On a smooth function a low-discrepancy sequence errs far less than independent samples, and the estimate must say so:
+/// within a factor of a few of the true error, never below it.
+TEST(Film, EstimatedErrorKnowsStratification) {
+    constexpr std::uint32_t kPixels = 1024, kSamples = 64;
+    Film film(kPixels, 1);
+    double error = 0;
+    for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
+        for (std::uint32_t i = 0; i < kSamples; ++i) {
+            const Vec2 u = Sampler(SamplerKind::sobol, 0, pixel, i).get_2d(0);
+            film.add(pixel, i, Color(u.x + u.y));
+        }
+        error += (film.mean(pixel).x - 1) * (film.mean(pixel).x - 1) / 1.01 / kPixels;
+    }
+    const double independent = (2.0 / 12) / kSamples / 1.01;
+    EXPECT_LT(error, independent / 20);
+    EXPECT_LT(film.relative_error(), independent / 5);
+    EXPECT_GT(film.relative_error(), error);
 }
 
 TEST(Film, ErrorIsUnknownWhileAHalfIsEmpty) {
