@@ -26,7 +26,7 @@ TEST(SceneErrors, EachNamesPlaceAndCause) {
         {"[]", "must be an object, is an array"},
         {"{}", "rayuela: the format version must be 1, is missing"},
         {R"({"rayuela": 2})", "rayuela: the format version must be 1, is 2"},
-        {R"({"rayuela": "1"})", "rayuela: the format version must be 1, is a string"},
+        {R"({"rayuela": "1"})", "rayuela: the format version must be 1, is a text"},
         {R"({"rayuela": 1, "film": {"width": 0}})", "film.width: must be >= 1, is 0"},
         {R"({"rayuela": 1, "film": {"width": 1.5}})", "film.width: must be a whole number, is 1.5"},
         {R"({"rayuela": 1, "film": {"width": 1e9}})", "film.width: must be <= 16384, is 1"},
