@@ -21,8 +21,8 @@ struct Ray {
 
 /// The closest intersection, and nothing else: everything a shader needs is derived from it once (SurfaceInteraction).
 struct Hit {
-    float t = kInfinity;  ///< Parameter along the ray.
-    float u = 0, v = 0;   ///< Parametric coordinates on the primitive (barycentrics b1, b2 of a triangle).
+    float t = kInfinity;              ///< Parameter along the ray.
+    float u = 0, v = 0;               ///< Parametric coordinates on the primitive (barycentrics b1, b2 of a triangle).
     std::uint32_t object = kNone;     ///< Index into the traced objects (GeometryInstance) or kNone.
     std::uint32_t primitive = kNone;  ///< Triangle of a mesh, face of a box, otherwise 0.
 

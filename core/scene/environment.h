@@ -26,25 +26,41 @@ struct ConstantEnvironment {
 
     template <typename Self, typename Visitor>
     static void visit_fields(Self& self, Visitor&& visit) {
-        visit(self.radiance, Field{.key = "radiance", .label = "Radiance", .tip = "Light from every direction.",
-                                   .role = FieldRole::radiance, .min = 0, .soft_min = 0, .soft_max = 2});
+        visit(self.radiance, Field{.key = "radiance",
+                                   .label = "Radiance",
+                                   .tip = "Light from every direction.",
+                                   .role = FieldRole::radiance,
+                                   .min = 0,
+                                   .soft_min = 0,
+                                   .soft_max = 2});
     }
     bool operator==(const ConstantEnvironment&) const = default;
 };
 
 /// Shirley's sky: from bottom to top by (y + 1) / 2 of the unit direction.
 struct GradientEnvironment {
-    static constexpr std::string_view kType = "gradient", kLabel = "Gradient", kTip = "A sky from one colour to another.";
+    static constexpr std::string_view kType = "gradient", kLabel = "Gradient",
+                                      kTip = "A sky from one colour to another.";
 
     Color bottom{1};
     Color top{0.5f, 0.7f, 1.0f};
 
     template <typename Self, typename Visitor>
     static void visit_fields(Self& self, Visitor&& visit) {
-        visit(self.bottom, Field{.key = "bottom", .label = "Bottom", .tip = "Light from straight below.",
-                                 .role = FieldRole::radiance, .min = 0, .soft_min = 0, .soft_max = 2});
-        visit(self.top, Field{.key = "top", .label = "Top", .tip = "Light from straight above.",
-                              .role = FieldRole::radiance, .min = 0, .soft_min = 0, .soft_max = 2});
+        visit(self.bottom, Field{.key = "bottom",
+                                 .label = "Bottom",
+                                 .tip = "Light from straight below.",
+                                 .role = FieldRole::radiance,
+                                 .min = 0,
+                                 .soft_min = 0,
+                                 .soft_max = 2});
+        visit(self.top, Field{.key = "top",
+                              .label = "Top",
+                              .tip = "Light from straight above.",
+                              .role = FieldRole::radiance,
+                              .min = 0,
+                              .soft_min = 0,
+                              .soft_max = 2});
     }
     bool operator==(const GradientEnvironment&) const = default;
 };
@@ -62,10 +78,18 @@ struct ImageEnvironment {
     template <typename Self, typename Visitor>
     static void visit_fields(Self& self, Visitor&& visit) {
         visit(self.file, Field{"file", "File", "Equirectangular image, .hdr or .exr.", FieldRole::file});
-        visit(self.scale, Field{.key = "scale", .label = "Scale", .tip = "Multiplies the image's light.",
-                                .min = 0, .soft_min = 0, .soft_max = 4});
-        visit(self.rotation, Field{.key = "rotation", .label = "Rotation", .tip = "Turns the panorama about the vertical.",
-                                   .role = FieldRole::angle, .soft_min = -180, .soft_max = 180});
+        visit(self.scale, Field{.key = "scale",
+                                .label = "Scale",
+                                .tip = "Multiplies the image's light.",
+                                .min = 0,
+                                .soft_min = 0,
+                                .soft_max = 4});
+        visit(self.rotation, Field{.key = "rotation",
+                                   .label = "Rotation",
+                                   .tip = "Turns the panorama about the vertical.",
+                                   .role = FieldRole::angle,
+                                   .soft_min = -180,
+                                   .soft_max = 180});
     }
     bool operator==(const ImageEnvironment&) const = default;
 };

@@ -48,7 +48,8 @@ Bounds3 local_bounds(const Shape& shape) {
         }
         Bounds3 operator()(const Quad& q) const {
             Bounds3 bounds;
-            for (const Vec3& corner : {q.point, q.point + q.u, q.point + q.v, q.point + q.u + q.v}) bounds.extend(corner);
+            for (const Vec3& corner : {q.point, q.point + q.u, q.point + q.v, q.point + q.u + q.v})
+                bounds.extend(corner);
             return bounds;
         }
         Bounds3 operator()(const ObjectList&) const { return {}; }

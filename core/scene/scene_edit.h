@@ -48,8 +48,8 @@ struct RemoveObject {
 struct DuplicateObject {
     ObjectId id;
 };
-using SceneEdit = std::variant<SetCamera, SetFilm, SetEnvironment, SetRenderSettings, AddMaterial, SetMaterial, RemoveMaterial,
-                               AddObject, SetObject, RemoveObject, DuplicateObject>;
+using SceneEdit = std::variant<SetCamera, SetFilm, SetEnvironment, SetRenderSettings, AddMaterial, SetMaterial,
+                               RemoveMaterial, AddObject, SetObject, RemoveObject, DuplicateObject>;
 
 /// The scene after the edit, or why it cannot be: out of range, unknown id, parent cycle, singular transform...
 Result<Scene> apply(const Scene& scene, const SceneEdit& edit);

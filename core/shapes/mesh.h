@@ -12,8 +12,8 @@ namespace rayuela {
 /// Triangles over shared vertices. Immutable once loaded; instances share it.
 struct TriangleMesh {
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;  ///< Unit, one a position, or empty: then faces are flat.
-    std::vector<Vec2> uvs;      ///< One a position, or empty.
+    std::vector<Vec3> normals;          ///< Unit, one a position, or empty: then faces are flat.
+    std::vector<Vec2> uvs;              ///< One a position, or empty.
     std::vector<glm::uvec3> triangles;  ///< Indices < positions.size(); degenerate triangles are allowed.
     Bounds3 bounds;                     ///< Of the positions.
 };

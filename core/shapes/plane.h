@@ -6,7 +6,8 @@ namespace rayuela {
 
 /// Infinite plane through `point`.
 struct Plane {
-    static constexpr std::string_view kType = "plane", kLabel = "Plane", kTip = "An infinite plane: a point and a normal.";
+    static constexpr std::string_view kType = "plane", kLabel = "Plane",
+                                      kTip = "An infinite plane: a point and a normal.";
 
     Vec3 point{0};
     Vec3 normal{0, 1, 0};  ///< Any length but zero.

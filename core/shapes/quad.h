@@ -6,7 +6,8 @@ namespace rayuela {
 
 /// Parallelogram point, point + u, point + u + v, point + v. Its front is the side of u x v.
 struct Quad {
-    static constexpr std::string_view kType = "quad", kLabel = "Quad", kTip = "A parallelogram: a corner and two edges.";
+    static constexpr std::string_view kType = "quad", kLabel = "Quad",
+                                      kTip = "A parallelogram: a corner and two edges.";
 
     Vec3 point{-0.5f, 0, 0.5f};
     Vec3 u{1, 0, 0};

@@ -14,8 +14,11 @@ struct Sphere {
     template <typename Self, typename Visitor>
     static void visit_fields(Self& self, Visitor&& visit) {
         visit(self.center, Field{"center", "Center", "Centre of the sphere.", FieldRole::position});
-        visit(self.radius, Field{.key = "radius", .label = "Radius", .tip = "Distance from the centre to the surface.",
-                                 .min = 0, .min_excluded = true});
+        visit(self.radius, Field{.key = "radius",
+                                 .label = "Radius",
+                                 .tip = "Distance from the centre to the surface.",
+                                 .min = 0,
+                                 .min_excluded = true});
     }
     bool operator==(const Sphere&) const = default;
 };

@@ -14,7 +14,8 @@ struct Triangle {
 
     template <typename Self, typename Visitor>
     static void visit_fields(Self& self, Visitor&& visit) {
-        visit(self.vertices, Field{"vertices", "Vertices", "Counter-clockwise seen from the front.", FieldRole::position});
+        visit(self.vertices,
+              Field{"vertices", "Vertices", "Counter-clockwise seen from the front.", FieldRole::position});
     }
     bool operator==(const Triangle&) const = default;
 };
