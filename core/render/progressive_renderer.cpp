@@ -70,7 +70,7 @@ void ProgressiveRenderer::restart() {
     film_->restart();
     if (preview_) preview_->restart();
     preview_unpublished_ = film_unpublished_ = film_shown_ = false;
-    coarse_passes_ = 0;
+    preview_done_ = false;
     counts_ = {};
     render_seconds_ = estimated_error_ = 0;
     taken_at_ = Clock::now();
@@ -86,8 +86,7 @@ ScheduleState ProgressiveRenderer::schedule_state() const {
             .max_samples = settings.max_samples,
             .max_seconds = settings.max_seconds,
             .samples = film_->samples(),
-            .coarse_passes = coarse_passes_,
-            .coarse_divisor = coarse_divisor_,
+            .preview_done = preview_done_,
             .render_seconds = render_seconds_,
             .quiet_seconds = seconds_since(taken_at_),
             .seconds_per_path = seconds_per_path_,
@@ -129,8 +128,7 @@ void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& canc
         film_unpublished_ |= traced.paths > 0;
     } else if (target.samples() == samples) {
         preview_unpublished_ = true;
-        ++coarse_passes_;
-        coarse_divisor_ = pass.divisor;
+        preview_done_ = true;
     }
 }
 

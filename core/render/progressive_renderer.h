@@ -65,7 +65,7 @@ private:
 
     std::unique_ptr<Accumulation> film_, preview_;
     bool preview_unpublished_ = false, film_unpublished_ = false, film_shown_ = false;
-    int coarse_passes_ = 0, coarse_divisor_ = 1;
+    bool preview_done_ = false;
     RayCounts counts_;
     double render_seconds_ = 0, estimated_error_ = 0;
     double seconds_per_path_ = 0, publish_seconds_ = 0;

@@ -179,14 +179,20 @@ void RenderSession::Impl::take(std::shared_ptr<const Scene> scene) {
 bool RenderSession::Impl::render_next() {
     if (!renderer.has_scene()) return false;
     const Pass pass = renderer.next_pass();
+    if (pass.kind == Pass::Kind::wait) {
+        std::unique_lock lock(mutex);
+        mail_arrived.wait_for(lock, std::chrono::duration<double>(pass.wait_seconds), [&] { return mail || quitting; });
+        return true;
+    }
+    const bool coarse = pass.kind == Pass::Kind::coarse;
     const bool resting = pass.kind == Pass::Kind::paused || pass.kind == Pass::Kind::finished;
     if (!resting) {
         report(SessionPhase::rendering);
         paths_done = 0;
         paths_wanted = renderer.paths_of(pass);
-        renderer.render(pass, pass.must_complete ? quitting : interrupted, paths_done);
+        renderer.render(pass, coarse ? quitting : interrupted, paths_done);
     }
-    if ((!interrupted || pass.must_complete) && renderer.publication_due()) publish();
+    if ((!interrupted || coarse) && renderer.publication_due()) publish();
     if (resting) report(phase_of(pass));
     return !resting;
 }

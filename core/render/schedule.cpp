@@ -7,8 +7,8 @@ namespace rayuela {
 
 namespace {
 
-constexpr double kCoarseSeconds = 0.022;      ///< Of one coarse pass: leaves room for publication at 40 Hz.
-constexpr double kQuietSeconds = 0.15;        ///< Without submissions, after which the film's turn has come.
+constexpr double kCoarseSeconds = 0.012;      ///< Of a coarse pass: leaves room to draw 30 times a second in software.
+constexpr double kQuietSeconds = 0.08;        ///< Without edits, after which the film's turn has come.
 constexpr int kCoarsestDivisor = 16;          ///< Below this a preview shows nothing.
 constexpr double kGuessedPathSeconds = 2e-6;  ///< Before anything was measured.
 constexpr double kHeadlessPassSeconds = 0.25;
@@ -34,9 +34,8 @@ double publish_interval(const ScheduleState& state) {
     return std::max(calm, 10 * state.publish_seconds);
 }
 
-bool needs_preview(const ScheduleState& state) {
-    if (!state.interactive || state.samples > 0) return false;
-    return state.coarse_passes == 0 ? coarse_divisor(state) > 1 : state.quiet_seconds < kQuietSeconds;
+bool previewing(const ScheduleState& state) {
+    return state.interactive && state.samples == 0;
 }
 
 /// Samples a pixel of a pass that ends about when the next publication is due.
@@ -49,11 +48,11 @@ int pass_samples(const ScheduleState& state) {
 }  // namespace
 
 Pass next_pass(const ScheduleState& state) {
-    if (needs_preview(state)) {
-        const bool first = state.coarse_passes == 0;
-        return {.kind = Pass::Kind::coarse,
-                .divisor = first ? coarse_divisor(state) : state.coarse_divisor,
-                .must_complete = first};
+    if (previewing(state) && !state.preview_done && coarse_divisor(state) > 1) {
+        return {.kind = Pass::Kind::coarse, .divisor = coarse_divisor(state)};
+    }
+    if (previewing(state) && state.preview_done && state.quiet_seconds < kQuietSeconds) {
+        return {.kind = Pass::Kind::wait, .wait_seconds = kQuietSeconds - state.quiet_seconds};
     }
     const bool complete = state.samples > 0;
     const bool sampled = state.max_samples > 0 && state.samples >= state.max_samples;

@@ -13,8 +13,7 @@ struct ScheduleState {
     double max_seconds = 0;  ///< 0: no limit.
 
     int samples = 0;              ///< In every pixel of the film.
-    int coarse_passes = 0;        ///< Since accumulation restarted.
-    int coarse_divisor = 1;       ///< Of those passes.
+    bool preview_done = false;    ///< A coarse pass since accumulation restarted.
     double render_seconds = 0;    ///< In passes since the restart.
     double quiet_seconds = 0;     ///< Since the last edit.
     double seconds_per_path = 0;  ///< Wall time of a camera path as last measured; 0 while unknown.
@@ -26,23 +25,23 @@ struct ScheduleState {
 
 struct Pass {
     enum class Kind : std::uint8_t {
-        coarse,    ///< One sample a pixel more of a preview.
-        full,      ///< The film.
-        paused,    ///< Nothing, until resumed.
+        coarse,  ///< A preview, one sample a pixel; not cut short even by an edit: else a stream of them shows nothing.
+        wait,    ///< Nothing for `wait_seconds`, unless an edit comes: the window may draw what there is.
+        full,    ///< The film.
+        paused,  ///< Nothing, until resumed.
         finished,  ///< Nothing: a limit is reached.
     };
     Kind kind = Kind::full;
-    int divisor = 1;             ///< Of the film's width and height.
-    int samples = 0;             ///< Full: that every pixel shall have at the end.
-    bool must_complete = false;  ///< Not to be cut short even by an edit: else a stream of edits shows nothing.
-    double stop_at = 0;          ///< Value of render_seconds that cuts the pass short; 0: never.
+    int divisor = 1;  ///< Of the film's width and height.
+    int samples = 0;  ///< Full: that every pixel shall have at the end.
+    double wait_seconds = 0;
+    double stop_at = 0;  ///< Value of render_seconds that cuts the pass short; 0: never.
 
     bool operator==(const Pass&) const = default;
 };
 
 /// What to render next. Pure: the session does as it says.
-/// After a restart previews come first, small enough for some 40 a second, for as long as edits keep coming; then
-/// the film. The first pass over the film always completes, so that no frame shows holes. Paused, it stops after that.
+/// After a restart comes a preview, small enough for some 40 edits a second, and once edits have ceased to come the film. The first pass over the film always completes, so that no frame shows holes. Paused, it stops after that.
 Pass next_pass(const ScheduleState& state);
 
 /// Whether the film is worth publishing, after a pass over it: at once when it has become complete or rendering is about
