@@ -1,3 +1,4 @@
+#include "app/bench_command.h"
 #include "app/subcommands.h"
 
 #include <fmt/format.h>
@@ -103,6 +104,7 @@ Result<void> run(int argc, char** argv, int& usage_status) {
     add_render(app, render);
     add_screenshot(app, screenshot);
     add_info(app, info);
+    const auto bench_kinds = add_bench(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -112,6 +114,7 @@ Result<void> run(int argc, char** argv, int& usage_status) {
     if (app.got_subcommand("render")) return run_render(render);
     if (app.got_subcommand("screenshot")) return run_screenshot(screenshot);
     if (app.got_subcommand("info")) return run_info(info);
+    if (app.got_subcommand("bench")) return run_bench(bench_kinds);
     return run_window(window);
 }
 

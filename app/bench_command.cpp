@@ -1,0 +1,18 @@
+#include "app/bench_command.h"
+
+#include <algorithm>
+
+namespace rayuela {
+
+std::vector<BenchKind> add_bench(CLI::App& app) {
+    CLI::App& bench = *app.add_subcommand("bench", "Measure speed and convergence");
+    bench.require_subcommand(1);
+    return {};
+}
+
+Result<void> run_bench(const std::vector<BenchKind>& kinds) {
+    const auto asked = std::ranges::find_if(kinds, [](const BenchKind& kind) { return kind.command->parsed(); });
+    return asked->run();
+}
+
+}  // namespace rayuela
