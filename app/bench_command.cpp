@@ -7,7 +7,7 @@ namespace rayuela {
 std::vector<BenchKind> add_bench(CLI::App& app) {
     CLI::App& bench = *app.add_subcommand("bench", "Measure speed and convergence");
     bench.require_subcommand(1);
-    return {};
+    return {add_bench_convergence(bench)};
 }
 
 Result<void> run_bench(const std::vector<BenchKind>& kinds) {

@@ -20,5 +20,6 @@ std::vector<BenchKind> add_bench(CLI::App& app);
 Result<void> run_bench(const std::vector<BenchKind>& kinds);
 
 // Each adds one kind to `bench`.
+BenchKind add_bench_convergence(CLI::App& bench);
 
 }  // namespace rayuela

@@ -30,7 +30,8 @@ int hardware_threads() {
 
 }  // namespace
 
-ProgressiveRenderer::ProgressiveRenderer(bool interactive, int threads) : interactive_(interactive) {
+ProgressiveRenderer::ProgressiveRenderer(bool interactive, int threads, const PathTracerOptions& options)
+    : interactive_(interactive), options_(options) {
     set_threads(threads);
 }
 
@@ -117,7 +118,7 @@ void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& canc
     const auto start = Clock::now();
     PassControl control{.cancelled = cancelled, .paths_done = paths_done};
     if (pass.stop_at > 0) control.stop_at = start + to_duration(pass.stop_at - render_seconds_);
-    const PathTracer tracer(*render_scene_, size.x, size.y);
+    const PathTracer tracer(*render_scene_, size.x, size.y, options_);
     const RayCounts traced = arena_.execute([&] { return target.add_samples(tracer, samples, control); });
 
     const double seconds = seconds_since(start);

@@ -17,7 +17,7 @@ namespace rayuela {
 /// task arena of its own inside.
 class ProgressiveRenderer {
 public:
-    ProgressiveRenderer(bool interactive, int threads);
+    ProgressiveRenderer(bool interactive, int threads, const PathTracerOptions& options = {});
 
     /// Makes `scene` the one to render; rebuilds what differs from the one before and restarts accumulation where the
     /// image changes. False, and nothing happens, when the build was cancelled.
@@ -53,6 +53,7 @@ private:
     bool film_complete() const { return film_->samples() > 0; }
 
     const bool interactive_;
+    const PathTracerOptions options_;
     bool paused_ = false;
     int threads_ = 0;
     tbb::task_arena arena_;

@@ -1,0 +1,28 @@
+#include "app/text_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rayuela {
+
+std::string TextTable::text() const {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows_) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
+    std::string text;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        std::string line;
+        for (std::size_t i = 0; i < rows_[r].size(); ++i) {
+            if (i > 0) line += "  ";
+            line += fmt::format(i < name_columns_ ? "{:<{}}" : "{:>{}}", rows_[r][i], widths[i]);
+        }
+        text += line + '\n';
+        if (r == 0) text += std::string(line.size(), '-') + '\n';
+    }
+    return text;
+}
+
+}  // namespace rayuela
