@@ -18,7 +18,7 @@ namespace {
 /// From this zoom on pixels are shown as squares rather than blended.
 constexpr float kSquarePixelZoom = 1.999f;
 constexpr Vec3 kBackground{0.066f, 0.070f, 0.075f};
-constexpr float kCheckerSize = 12;
+constexpr float kMaxDivisor = 4;
 
 /// `constants` goes below the first line, which is the version.
 unsigned compile(GLenum kind, std::string_view name, const std::string& constants) {
@@ -63,6 +63,24 @@ unsigned make_texture(int filter) {
     return texture;
 }
 
+/// By how much smaller than it is shown a preview may be drawn: two pixels for each of its large ones.
+int preview_divisor(const Frame& frame, const DisplayRequest& request) {
+    if (!frame.coarse || !frame.scene || frame.image.width < 1) return 1;
+    const int film = frame.scene->film.width;
+    const float shown = request.zoom * static_cast<float>(film) / static_cast<float>(frame.image.width);
+    return static_cast<int>(std::clamp(shown / 2, 1.0f, kMaxDivisor));
+}
+
+DisplayRequest divided(DisplayRequest request, int divisor) {
+    const auto factor = 1 / static_cast<float>(divisor);
+    request.size = (request.size + divisor - 1) / divisor;
+    request.origin *= factor;
+    request.zoom *= factor;
+    request.checker_size *= factor;
+    request.outline_width *= factor;
+    return request;
+}
+
 }  // namespace
 
 Display::Display()
@@ -91,11 +109,11 @@ unsigned Display::program(ToneMap tone_map, bool smooth, bool outline) {
     return program;
 }
 
-unsigned Display::draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request) {
-    if (request.size.x < 1 || request.size.y < 1) return 0;
+Display::Picture Display::draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request) {
+    if (request.size.x < 1 || request.size.y < 1) return {};
     const Frame nothing;
     const Frame& shown = frame ? *frame : nothing;
-    if (shown.version == drawn_version_ && request == drawn_) return target_;
+    if (shown.version == drawn_version_ && request == drawn_) return {target_, lower_right_};
 
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     if (shown.version != film_version_ && !shown.image.pixels.empty()) {
@@ -108,11 +126,15 @@ unsigned Display::draw(const std::shared_ptr<const Frame>& frame, const DisplayR
         mask_version_ = shown.version;
         masked_ = request.outlined;
     }
-    resize_target(request.size);
-    draw_film(shown, request);
+    const int divisor = preview_divisor(shown, request);
+    const DisplayRequest reduced = divided(request, divisor);
+    prepare_target(reduced.size, divisor > 1);
+    draw_film(shown, reduced);
+    const Vec2 covered = Vec2(request.size) / Vec2(reduced.size * divisor);
+    lower_right_ = {covered.x, 1 - covered.y};
     drawn_version_ = shown.version;
     drawn_ = request;
-    return target_;
+    return {target_, lower_right_};
 }
 
 void Display::upload_film(const Image& image) {
@@ -158,9 +180,10 @@ void Display::upload_mask(const Frame& frame, const std::vector<ObjectId>& outli
     }
 }
 
-void Display::resize_target(glm::ivec2 size) {
-    if (size == target_size_) return;
+void Display::prepare_target(glm::ivec2 size, bool enlarged) {
     glBindTexture(GL_TEXTURE_2D, target_);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, enlarged ? GL_LINEAR : GL_NEAREST);
+    if (size == target_size_) return;
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     target_size_ = size;
 }
@@ -219,7 +242,7 @@ void Display::draw_triangle(const Frame& frame, const DisplayRequest& request, b
     glUniform1f(at("outline_width"), request.outline_width);
     glUniform3f(at("outline_color"), theme::kAccent.x, theme::kAccent.y, theme::kAccent.z);
     glUniform3f(at("background"), kBackground.x, kBackground.y, kBackground.z);
-    glUniform1f(at("checker_size"), kCheckerSize);
+    glUniform1f(at("checker_size"), request.checker_size);
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

@@ -17,13 +17,15 @@ struct DisplayRequest {
     float zoom = 1;      ///< Target pixels an image pixel.
     float exposure = 0;
     ToneMap tone_map = ToneMap::linear;
+    float checker_size = 12;  ///< Of the squares beside the image.
     float outline_width = 0;
     std::vector<ObjectId> outlined;
 
     bool operator==(const DisplayRequest&) const = default;
 };
 
-/// Draws frames into a texture with shaders/display.frag. What has not changed is neither uploaded nor drawn again.
+/// Draws frames into a texture with shaders/display.frag. What has not changed is neither uploaded nor drawn again, and
+/// a preview, which has little detail, is drawn small: enlarging it is cheap where OpenGL runs in software.
 /// Lives and dies with its OpenGL context current.
 class Display {
 public:
@@ -32,8 +34,12 @@ public:
     Display(const Display&) = delete;
     Display& operator=(const Display&) = delete;
 
-    /// The texture that shows the frame; its rows run upwards, as OpenGL's do. 0 where the size is 0.
-    unsigned draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request);
+    /// A texture to be stretched over the size asked for. Its rows run upwards, as OpenGL's do.
+    struct Picture {
+        unsigned texture = 0;    ///< 0 where that size is 0.
+        Vec2 lower_right{1, 0};  ///< Texture coordinates of that corner; the upper left one has (0, 1).
+    };
+    Picture draw(const std::shared_ptr<const Frame>& frame, const DisplayRequest& request);
 
     struct Statistics {
         std::uint64_t uploads = 0;
@@ -45,7 +51,7 @@ public:
 private:
     void upload_film(const Image& image);
     void upload_mask(const Frame& frame, const std::vector<ObjectId>& outlined);
-    void resize_target(glm::ivec2 size);
+    void prepare_target(glm::ivec2 size, bool enlarged);
     void draw_film(const Frame& frame, const DisplayRequest& request);
 
     void draw_triangle(const Frame& frame, const DisplayRequest& request, bool outline);
@@ -58,6 +64,7 @@ private:
     unsigned target_ = 0, framebuffer_ = 0;
     glm::ivec2 film_size_{0}, mask_size_{0}, target_size_{0};
     glm::ivec4 mask_bounds_{0};
+    Vec2 lower_right_{1, 0};
     std::uint64_t film_version_ = 0, mask_version_ = 0, drawn_version_ = 0;
     std::vector<ObjectId> masked_;
     DisplayRequest drawn_;

@@ -100,9 +100,9 @@ void Viewport::draw_image(Editor& editor, const Vec2& size) {
         request.outlined = with_children(editor.scene(), *editor.selection);
     }
     const Vec2 end = canvas_.corner + size;
-    if (const unsigned texture = display_.draw(frame, request)) {
-        list.AddImage(static_cast<ImTextureID>(texture), {canvas_.corner.x, canvas_.corner.y}, {end.x, end.y}, {0, 1},
-                      {1, 0});
+    if (const Display::Picture picture = display_.draw(frame, request); picture.texture) {
+        list.AddImage(static_cast<ImTextureID>(picture.texture), {canvas_.corner.x, canvas_.corner.y}, {end.x, end.y},
+                      {0, 1}, {picture.lower_right.x, picture.lower_right.y});
     }
     const bool on_gizmo = gizmo_.draw(editor, corner, image_size);
 

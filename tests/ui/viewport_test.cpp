@@ -3,6 +3,7 @@
 #include "ui/camera_control.h"
 #include "ui/tone_map.h"
 
+#include <glad/glad.h>
 #include <gmock/gmock.h>
 
 namespace rayuela {
@@ -304,6 +305,52 @@ TEST_F(ViewportTest, ScreenshotIsWhatTheWindowShows) {
     run([&](ImGuiTestContext* script) { script->MouseMoveToPos({2, 2}); });
     const Image shown = pixels();
     EXPECT_LT(difference(shown, application().screenshot(0)), 1e-4f);
+}
+
+TEST_F(ViewportTest, APreviewIsDrawnSmallAndInItsPlace) {
+    Scene scene;
+    scene.film.width = 400;
+    scene.film.height = 200;
+    Frame frame;
+    frame.version = 1;
+    frame.scene = std::make_shared<const Scene>(scene);
+    frame.image = {40, 20, std::vector<Vec4>(40 * 20, Vec4(1)), {}};
+    for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 20; ++x) frame.image.pixels[static_cast<std::size_t>(40 * y + x)] = Vec4(0, 0, 0, 1);
+    }
+    Display display;
+    DisplayRequest request;
+    request.size = {433, 251};
+    request.origin = {10, 20};
+    for (const bool coarse : {true, false}) {
+        frame.coarse = coarse;
+        ++frame.version;
+        const auto [texture, lower_right] = display.draw(std::make_shared<const Frame>(frame), request);
+        glBindTexture(GL_TEXTURE_2D, texture);
+        int width = 0, height = 0;
+        glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
+        glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &height);
+        if (coarse) {
+            EXPECT_LT(width * height, 433 * 251 / 10);
+        } else {
+            EXPECT_EQ(glm::ivec2(width, height), request.size);
+        }
+        std::vector<std::uint8_t> texels(static_cast<std::size_t>(4 * width * height));
+        glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+        const auto shown = [&](Vec2 position) {
+            const Vec2 uv = glm::mix(Vec2(0, 1), lower_right, position / Vec2(request.size));
+            const glm::ivec2 at = glm::clamp(glm::ivec2(uv * Vec2(width, height)), {0, 0}, {width - 1, height - 1});
+            return int{texels[static_cast<std::size_t>(4 * (at.y * width + at.x))]};
+        };
+        for (const float y : {26.0f, 120.0f, 214.0f}) {
+            EXPECT_LT(shown({16, y}), 5) << y;
+            EXPECT_LT(shown({200, y}), 5) << y;
+            EXPECT_GT(shown({220, y}), 250) << y;
+            EXPECT_GT(shown({404, y}), 250) << y;
+            for (const float x : {4.0f, 416.0f}) EXPECT_NEAR(shown({x, y}), 17, 4) << "beside the image " << x;
+        }
+        for (const float y : {14.0f, 226.0f}) EXPECT_NEAR(shown({300, y}), 17, 4) << "above or below the image " << y;
+    }
 }
 
 class DenseDisplayTest : public UiTest {
