@@ -1,8 +1,8 @@
 #include "app/subcommands.h"
 #include "core/io/image_io.h"
+#include "core/math/srgb.h"
 #include "ui/application.h"
 #include "ui/assets_path.h"
-#include "ui/tone_map.h"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ Result<void> run_screenshot(const ScreenshotOptions& options) {
     if (editor.file() != options.scene) return tl::unexpected(errors_of(editor.log));
     Image image = application.screenshot(options.spp);
     for (Vec4& pixel : image.pixels) {
-        for (int channel = 0; channel < 3; ++channel) pixel[channel] = linear_from_srgb(pixel[channel]);
+        for (int channel = 0; channel < 3; ++channel) pixel[channel] = srgb_to_linear(pixel[channel]);
     }
     return write_image(options.output, image);
 }

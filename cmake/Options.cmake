@@ -36,15 +36,13 @@ if(RAYUELA_SANITIZE)
     if(has_ubsan)
         list(APPEND sanitize_flags -fsanitize=float-cast-overflow -fno-sanitize-recover=all)
     endif()
-    # Dependencies built here take part too: a container passed between instrumented and plain code confuses ASan.
-    add_compile_options(${sanitize_flags})
     add_link_options(${sanitize_flags})
 endif()
 if(RAYUELA_FUZZ)
     if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
         message(FATAL_ERROR "RAYUELA_FUZZ needs clang: use the preset 'fuzz'")
     endif()
-    add_compile_options(-fsanitize=fuzzer-no-link)
+    list(APPEND sanitize_flags -fsanitize=fuzzer-no-link)
     add_link_options(-fsanitize=fuzzer-no-link)
 endif()
 
@@ -55,7 +53,9 @@ target_compile_options(rayuela_options INTERFACE
     # Structs name the fields they set; the others have their defaults.
     -Wno-missing-field-initializers
     # Contraction breaks the watertight triangle test; where an fma is wanted, the source says std::fma.
-    -ffp-contract=off)
+    -ffp-contract=off
+    # Only ours: Dear ImGui's sources, which are built here too, would take minutes and gigabytes.
+    ${sanitize_flags})
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # False positives of GCC 12 and 13 on std::string (GCC bug 105651) and on std::optional.
     target_compile_options(rayuela_options INTERFACE -Wno-restrict -Wno-maybe-uninitialized)

@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 namespace rayuela {
@@ -98,6 +97,9 @@ Application::Impl::Impl(std::unique_ptr<GlContext> gl_context, Preferences prefe
     : context(std::move(gl_context)),
       editor(std::move(preferences), threads),
       imgui(*context, editor.preferences.folder) {
+    for (std::size_t i = 0; i < kPanels.size(); ++i) {
+        editor.panels.closed[i] = std::ranges::count(editor.preferences.closed_panels, kPanels[i].name) > 0;
+    }
     if (GLFWwindow* const window = context->window()) {
         glfwSetWindowUserPointer(window, this);
         glfwSetDropCallback(window, [](GLFWwindow* target, int count, const char** paths) {
@@ -116,6 +118,10 @@ Application::Impl::Impl(std::unique_ptr<GlContext> gl_context, Preferences prefe
 
 Application::Impl::~Impl() {
     editor.session().on_publish({});
+    editor.preferences.closed_panels.clear();
+    for (std::size_t i = 0; i < kPanels.size(); ++i) {
+        if (editor.panels.closed[i]) editor.preferences.closed_panels.emplace_back(kPanels[i].name);
+    }
 }
 
 void Application::Impl::update_theme() {
@@ -206,21 +212,20 @@ void Application::Impl::drop(const std::filesystem::path& file) {
     editor.after_asking_to_save([file](Editor& target) { target.open(file); });
 }
 
+constexpr double kLongestSleep = 60;  ///< Seconds; then the editor may have something to autosave.
+
 /// Sleeps until something may have to be drawn, then says whether it has to.
 bool Application::Impl::wait_and_decide(FrameTiming& timing) {
     constexpr double kCheckLoads = 0.1;  ///< A finished load posts no event.
     timing.published = published;
     timing.animating = viewport.is_animating() || editor.session().status().phase == SessionPhase::building;
     timing.now = now_seconds();
-    double wait = seconds_to_next_frame(timing);
-    if (editor.is_loading()) wait = std::min(wait, kCheckLoads);
-    const bool timed = std::isfinite(wait);
+    const double longest = editor.is_loading() ? kCheckLoads : kLongestSleep;
+    const double wait = std::min(seconds_to_next_frame(timing), longest);
     if (wait <= 0) {
         glfwPollEvents();
-    } else if (timed) {
-        glfwWaitEventsTimeout(wait);
     } else {
-        glfwWaitEvents();
+        glfwWaitEventsTimeout(wait);
     }
     timing.now = now_seconds();
     if (refresh || !ImGui::GetCurrentContext()->InputEventsQueue.empty()) {
@@ -235,13 +240,17 @@ bool Application::Impl::wait_and_decide(FrameTiming& timing) {
         timing.last_input = timing.now;
         timing.frames_since_input = 0;
     }
-    return seconds_to_next_frame(timing) <= 0 || (editor.is_loading() && timing.now - timing.last_draw >= kCheckLoads);
+    return seconds_to_next_frame(timing) <= 0 || timing.now - timing.last_draw >= longest;
 }
 
 Application::Application(std::unique_ptr<GlContext> context, Preferences preferences, int threads)
     : impl_(std::make_unique<Impl>(std::move(context), std::move(preferences), threads)) {}
 
 Application::~Application() = default;
+
+void Application::drop(const std::filesystem::path& file) {
+    impl_->drop(file);
+}
 
 Editor& Application::editor() {
     return impl_->editor;
@@ -262,7 +271,8 @@ void Application::run() {
     timing.frames_since_input = 0;
     while (!impl_->editor.wants_quit) {
         if (glfwGetWindowAttrib(window, GLFW_ICONIFIED)) {
-            glfwWaitEvents();
+            glfwWaitEventsTimeout(kLongestSleep);
+            impl_->editor.begin_frame(0);
             impl_->refresh = true;
             if (glfwWindowShouldClose(window)) glfwRestoreWindow(window);
             continue;

@@ -20,6 +20,8 @@ public:
     /// Draws one frame of the user interface (events have been put into ImGui's queue before). Used by `run`, by the
     /// screenshot and by the tests.
     void draw_frame();
+    /// What dropping a file on the window does: opens it, or with Shift held adds it to the scene.
+    void drop(const std::filesystem::path& file);
     /// Draws until the scene is loaded and its image has at least `spp` samples, then returns what the window shows.
     Image screenshot(int spp);
     const Display::Statistics& display_statistics() const;

@@ -37,6 +37,11 @@ void add_file_commands(std::vector<Command>& list) {
                     .starts_group = true});
     list.push_back(
         {"File", "Save as...", "Saves the scene to another file.", kCtrl | kShift | ImGuiKey_S, 0, save_as_dialog});
+    list.push_back({.menu = "File",
+                    .name = "Restore autosave",
+                    .tip = "Opens what a session that ended without saving had autosaved.",
+                    .run = [](Editor& editor) { editor.restore_lost_work(); },
+                    .enabled = [](const Editor& editor) { return !editor.lost_work().empty(); }});
     list.push_back({"File", "Save image...", "PNG as it looks, or EXR, HDR, PFM with linear light.", ImGuiKey_F12, 0,
                     save_image_dialog});
     list.push_back({.menu = "File",

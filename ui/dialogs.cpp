@@ -51,6 +51,27 @@ void draw_unsaved_question(Editor& editor) {
     if (discard) action(editor);
 }
 
+void draw_lost_work(Editor& editor) {
+    constexpr const char* kTitle = "Restore?";
+    bool& show = editor.panels.show_lost_work;
+    if (show && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings))
+        return;
+    ImGui::TextUnformatted("Rayuela ended without saving the last time.");
+    hint("File > Restore autosave brings it back later, too.");
+    ImGui::Spacing();
+    const bool restore = button("Restore", "Opens what was autosaved, as an unsaved scene.", 7);
+    ImGui::SameLine();
+    const bool go_on = button("Not now", "Goes on without it (Escape).", 7) || ImGui::IsKeyPressed(ImGuiKey_Escape);
+    if (restore || go_on) {
+        show = false;
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+    if (restore) editor.restore_lost_work();
+}
+
 void draw_shortcut_table(const char* menu) {
     ImGui::SeparatorText(menu);
     if (!ImGui::BeginTable(menu, 3, ImGuiTableFlags_RowBg)) return;
@@ -175,6 +196,7 @@ void draw_dialogs(Editor& editor) {
     draw_quick_start(editor);
     draw_shortcuts(editor);
     draw_about(editor);
+    draw_lost_work(editor);
     draw_unsaved_question(editor);
     draw_file_dialog(editor);
 }

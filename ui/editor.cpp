@@ -32,6 +32,11 @@ fs::path autosave_file(const Preferences& preferences) {
     return preferences.folder.empty() ? fs::path() : preferences.folder / "autosave.scene.json";
 }
 
+/// An autosave found at start, out of the way of those to come.
+fs::path lost_file(const Preferences& preferences) {
+    return preferences.folder.empty() ? fs::path() : preferences.folder / "lost.scene.json";
+}
+
 }  // namespace
 
 /// What a background job has read: how the scene changes by it.
@@ -59,10 +64,14 @@ Editor::Editor(Preferences initial, int thread_count)
       session_({.threads = thread_count, .interactive = true}),
       session_threads_(thread_count) {
     panels.show_quick_start = preferences.first_start && !preferences.folder.empty();
+    std::error_code error;
+    if (!preferences.folder.empty()) fs::rename(autosave_file(preferences), lost_file(preferences), error);
+    panels.show_lost_work = !preferences.folder.empty() && !error;
     show();
 }
 
 Editor::~Editor() {
+    discard_autosave();
     preferences.view = view;
     save_preferences(preferences);
 }
@@ -92,7 +101,7 @@ void Editor::begin_frame(std::uint64_t gesture) {
 
     frame_ = session_.frame();
     if (frame_) convergence_.add(frame_->statistics);
-    autosave();
+    if (std::chrono::steady_clock::now() - autosave_time_ >= kAutosaveInterval) autosave();
 }
 
 bool Editor::edit(const SceneEdit& edit, std::string label) {
@@ -176,7 +185,7 @@ void Editor::finish(Load& load) {
         const bool is_new = !scene().objects.empty() && scene().objects.back().id.value >= first_new_id;
         if (is_new) selection = scene().objects.back().id;
     } else {
-        const bool recovered = load.opened == autosave_file(preferences);
+        const bool recovered = load.opened == lost_file(preferences);
         history_ = SceneHistory(current);
         saved_ = recovered ? nullptr : current;
         file_ = recovered ? fs::path() : load.opened;
@@ -298,6 +307,7 @@ bool Editor::save_as(const fs::path& file) {
     }
     file_ = file;
     saved_ = history_.current();
+    discard_autosave();
     remember_file(preferences, file_);
     save_preferences(preferences);
     log.add(LogLevel::info, "Saved " + file_.string());
@@ -346,16 +356,33 @@ void Editor::request_quit() {
 }
 
 void Editor::autosave() {
-    const auto now = std::chrono::steady_clock::now();
-    if (preferences.folder.empty() || now - autosave_time_ < kAutosaveInterval) return;
-    autosave_time_ = now;
-    if (!is_modified() || autosaved_ == history_.current()) return;
+    autosave_time_ = std::chrono::steady_clock::now();
+    if (preferences.folder.empty() || !is_modified() || autosaved_ == history_.current()) return;
     std::error_code error;
     fs::create_directories(preferences.folder, error);
     if (auto written = write_scene(autosave_file(preferences), scene(), cache_.get()); !written) {
         log.add(LogLevel::warning, "Autosave: " + to_string(written.error()));
     }
     autosaved_ = history_.current();
+}
+
+/// What it holds is saved, or not wanted.
+void Editor::discard_autosave() {
+    std::error_code error;
+    if (autosaved_) fs::remove(autosave_file(preferences), error);
+    autosaved_.reset();
+}
+
+fs::path Editor::lost_work() const {
+    std::error_code error;
+    const fs::path file = lost_file(preferences);
+    return fs::exists(file, error) ? file : fs::path();
+}
+
+void Editor::restore_lost_work() {
+    if (const fs::path file = lost_work(); !file.empty()) {
+        after_asking_to_save([file](Editor& editor) { editor.open(file); });
+    }
 }
 
 }  // namespace rayuela

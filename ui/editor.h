@@ -83,6 +83,13 @@ public:
     /// Differs from what was last opened or saved.
     bool is_modified() const;
 
+    /// Writes unsaved changes to the configuration folder; begin_frame does it once a minute.
+    void autosave();
+    /// What a session that ended without saving, by a crash or a kill, had autosaved; empty where there is nothing.
+    std::filesystem::path lost_work() const;
+    /// Opens that, as an unsaved scene, once unsaved changes of this one are dealt with.
+    void restore_lost_work();
+
     /// Does it at once, or, where there are unsaved changes, after having asked (see draw_menu_bar).
     void after_asking_to_save(std::function<void(Editor&)> action);
     /// For the window's close button: sets `wants_quit` once nothing unsaved would be lost.
@@ -108,7 +115,7 @@ private:
     void push(std::shared_ptr<const Scene> scene, std::string label, std::uint64_t gesture);
     void show();
     void forget_lost_selection();
-    void autosave();  ///< To the configuration folder, once a minute where something is unsaved.
+    void discard_autosave();
 
     SceneHistory history_;
     std::shared_ptr<const Scene> saved_;

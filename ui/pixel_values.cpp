@@ -1,5 +1,6 @@
 #include "ui/pixel_values.h"
 
+#include "core/math/srgb.h"
 #include "ui/theme.h"
 #include "ui/tone_map.h"
 
@@ -18,8 +19,7 @@ ImVec2 to_imgui(const Vec2& v) {
 }
 
 ImU32 srgb(const Color& linear) {
-    return ImGui::GetColorU32(
-        ImVec4(srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z), 1));
+    return ImGui::GetColorU32(ImVec4(linear_to_srgb(linear.x), linear_to_srgb(linear.y), linear_to_srgb(linear.z), 1));
 }
 
 }  // namespace

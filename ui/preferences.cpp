@@ -24,6 +24,14 @@ void read(const json& values, const char* key, float& value, float min, float ma
         value = std::clamp(found->get<float>(), min, max);
 }
 
+void read(const json& values, const char* key, std::vector<std::string>& value) {
+    const auto found = values.find(key);
+    if (found == values.end() || !found->is_array()) return;
+    for (const json& text : *found) {
+        if (text.is_string()) value.push_back(text.get<std::string>());
+    }
+}
+
 void read_view(const json& values, ViewSettings& view) {
     if (!values.is_object()) return;
     read(values, "exposure", view.exposure, -20, 20);
@@ -60,10 +68,8 @@ Preferences load_preferences(const fs::path& folder) {
 
     preferences.first_start = false;
     read(values, "ui_scale", preferences.ui_scale, 0.5f, 4);
-    if (const auto files = values.find("recent_files"); files != values.end() && files->is_array()) {
-        for (const json& file : *files)
-            if (file.is_string()) preferences.recent_files.push_back(file.get<std::string>());
-    }
+    read(values, "recent_files", preferences.recent_files);
+    read(values, "closed_panels", preferences.closed_panels);
     if (const auto view = values.find("view"); view != values.end()) read_view(*view, preferences.view);
     return preferences;
 }
@@ -73,6 +79,7 @@ void save_preferences(const Preferences& preferences) {
     const ViewSettings& view = preferences.view;
     const json values{{"ui_scale", preferences.ui_scale},
                       {"recent_files", preferences.recent_files},
+                      {"closed_panels", preferences.closed_panels},
                       {"view",
                        {{"exposure", view.exposure},
                         {"tone_map", kToneMapNames[static_cast<std::size_t>(view.tone_map)]},

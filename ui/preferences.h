@@ -12,7 +12,8 @@ namespace rayuela {
 struct Preferences {
     std::filesystem::path folder;  ///< Where it is kept; empty: nothing is read or written (tests, screenshots).
     std::vector<std::string> recent_files;  ///< Newest first.
-    float ui_scale = 1;                     ///< Multiplies the display's own scale.
+    std::vector<std::string> closed_panels;
+    float ui_scale = 1;  ///< Multiplies the display's own scale.
     bool first_start = true;
     ViewSettings view;
 };

@@ -1,5 +1,7 @@
 #include "ui/tone_map.h"
 
+#include "core/math/srgb.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -56,8 +58,8 @@ Color false_color(const Color& radiance) {
     const float b =
         0.10667330f +
         x * (12.64194608f + x * (-60.58204836f + x * (110.36276771f + x * (-89.90310912f + x * 27.34824973f))));
-    return {linear_from_srgb(std::clamp(r, 0.0f, 1.0f)), linear_from_srgb(std::clamp(g, 0.0f, 1.0f)),
-            linear_from_srgb(std::clamp(b, 0.0f, 1.0f))};
+    return {srgb_to_linear(std::clamp(r, 0.0f, 1.0f)), srgb_to_linear(std::clamp(g, 0.0f, 1.0f)),
+            srgb_to_linear(std::clamp(b, 0.0f, 1.0f))};
 }
 
 }  // namespace
@@ -90,14 +92,6 @@ Image tone_mapped(const Image& image, float exposure, ToneMap tone_map) {
     std::ranges::transform(image.pixels, result.pixels.begin(),
                            [&](const Vec4& pixel) { return Vec4(tone_mapped(Color(pixel), exposure, tone_map), 1); });
     return result;
-}
-
-float srgb_from_linear(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-
-float linear_from_srgb(float srgb) {
-    return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace rayuela

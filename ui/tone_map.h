@@ -11,8 +11,4 @@ Color tone_mapped(const Color& radiance, float exposure, ToneMap tone_map);
 /// The whole image, alpha 1.
 Image tone_mapped(const Image& image, float exposure, ToneMap tone_map);
 
-/// Khronos' data format specification 13.3.
-float srgb_from_linear(float linear);
-float linear_from_srgb(float srgb);
-
 }  // namespace rayuela

@@ -2,6 +2,7 @@
 
 #include "ui/camera_views.h"
 #include "ui/icons.h"
+#include "ui/number_text.h"
 #include "ui/theme.h"
 
 #include <fmt/format.h>
@@ -156,24 +157,6 @@ void draw_pixel(const Frame& frame, const glm::ivec2& pixel) {
 }
 
 }  // namespace
-
-std::string duration_text(double seconds) {
-    if (seconds < 60) return fmt::format("{:.1f} s", seconds);
-    const auto whole = static_cast<long>(seconds);
-    if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-    return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
-}
-
-std::string count_text(double count) {
-    constexpr const char* kUnits[] = {"", "k", "M", "G", "T"};
-    std::size_t unit = 0;
-    while (count >= 999.5 && unit + 1 < std::size(kUnits)) {
-        count /= 1000;
-        ++unit;
-    }
-    if (unit == 0) return fmt::format("{:.0f}", count);
-    return fmt::format("{:.{}f}{}", count, count < 10 ? 2 : count < 100 ? 1 : 0, kUnits[unit]);
-}
 
 void draw_toolbar(Editor& editor) {
     draw_gizmo_modes(editor.view);

@@ -11,9 +11,4 @@ void draw_toolbar(Editor& editor);
 /// `pixel`: position in the film, negative where the mouse is elsewhere.
 void draw_status_line(Editor& editor, const glm::ivec2& pixel);
 
-/// "1.2 s", "3 min 20 s", "2 h 5 min".
-std::string duration_text(double seconds);
-/// "980", "12.3k", "4.56M".
-std::string count_text(double count);
-
 }  // namespace rayuela

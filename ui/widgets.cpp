@@ -1,8 +1,8 @@
 #include "ui/widgets.h"
 
+#include "core/math/srgb.h"
 #include "ui/icons.h"
 #include "ui/theme.h"
-#include "ui/tone_map.h"
 
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -65,13 +65,13 @@ bool number_control(const char* id, float& value, const Field& field) {
 Color edited_color(const Color& before, const Vec3& shown, const Vec3& edited) {
     Color result = before;
     for (int channel = 0; channel < 3; ++channel) {
-        if (edited[channel] != shown[channel]) result[channel] = linear_from_srgb(edited[channel]);
+        if (edited[channel] != shown[channel]) result[channel] = srgb_to_linear(edited[channel]);
     }
     return result;
 }
 
 Vec3 encoded(const Color& linear) {
-    return {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
+    return {linear_to_srgb(linear.x), linear_to_srgb(linear.y), linear_to_srgb(linear.z)};
 }
 
 constexpr ImGuiColorEditFlags kColorFlags =

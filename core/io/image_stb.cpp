@@ -1,5 +1,5 @@
 #include "core/io/image_formats.h"
-#include "core/io/srgb.h"
+#include "core/math/srgb.h"
 
 #include <stb_image.h>
 #include <stb_image_write.h>

@@ -1,6 +1,6 @@
 #include "core/io/json_reader.h"
 
-#include "core/io/srgb.h"
+#include "core/math/srgb.h"
 
 #include <algorithm>
 #include <array>

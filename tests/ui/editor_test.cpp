@@ -294,8 +294,44 @@ TEST(Editor, AutosaveLeavesNoTraceWithoutAFolder) {
     EXPECT_TRUE(Preferences{}.folder.empty());
     Editor editor({}, 1);
     add_sphere(editor);
-    editor.begin_frame(0);
+    editor.autosave();
     EXPECT_FALSE(std::filesystem::exists("autosave.scene.json"));
+    EXPECT_TRUE(editor.lost_work().empty());
+}
+
+TEST(Editor, WhatWasAutosavedBeforeACrashCanBeRestored) {
+    const TemporaryFolder clean, crashed;
+    const auto autosaved = clean.path() / "autosave.scene.json";
+    const Preferences preferences{.folder = clean.path(), .first_start = false};
+    {
+        Editor editor(preferences, 1);
+        editor.autosave();
+        EXPECT_FALSE(std::filesystem::exists(autosaved)) << "nothing was changed";
+        set_radius(editor, add_sphere(editor), 7);
+        editor.autosave();
+        ASSERT_TRUE(std::filesystem::exists(autosaved));
+        std::filesystem::copy(autosaved, crashed.path() / autosaved.filename());
+        ASSERT_TRUE(editor.save_as(clean.path() / "a.scene.json"));
+        EXPECT_FALSE(std::filesystem::exists(autosaved)) << "saved";
+        add_sphere(editor);
+        editor.autosave();
+        EXPECT_TRUE(std::filesystem::exists(autosaved));
+    }
+    EXPECT_FALSE(std::filesystem::exists(autosaved)) << "ended as it should";
+    EXPECT_FALSE(Editor(preferences, 1).panels.show_lost_work);
+
+    for (int start = 0; start < 2; ++start) {
+        Editor editor({.folder = crashed.path(), .first_start = false}, 1);
+        EXPECT_EQ(editor.panels.show_lost_work, start == 0) << "asked once";
+        ASSERT_FALSE(editor.lost_work().empty());
+        editor.restore_lost_work();
+        ASSERT_TRUE(wait_until(editor, [&] { return !editor.is_loading(); }));
+        ASSERT_EQ(editor.scene().objects.size(), 1u);
+        EXPECT_EQ(std::get<Sphere>(editor.scene().objects[0].shape).radius, 7);
+        EXPECT_TRUE(editor.is_modified());
+        EXPECT_TRUE(editor.file().empty());
+        EXPECT_TRUE(editor.preferences.recent_files.empty());
+    }
 }
 
 }  // namespace

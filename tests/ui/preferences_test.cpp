@@ -16,6 +16,7 @@ TEST(Preferences, ComeBackAsTheyWereSaved) {
     preferences.view.exposure = -1.5f;
     preferences.view.tone_map = ToneMap::agx;
     preferences.view.match_window = false;
+    preferences.closed_panels = {"Log"};
     remember_file(preferences, "/scenes/a.scene.json");
     remember_file(preferences, "/scenes/b.scene.json");
     save_preferences(preferences);
@@ -26,6 +27,7 @@ TEST(Preferences, ComeBackAsTheyWereSaved) {
     EXPECT_EQ(read.view.exposure, -1.5f);
     EXPECT_EQ(read.view.tone_map, ToneMap::agx);
     EXPECT_FALSE(read.view.match_window);
+    EXPECT_THAT(read.closed_panels, testing::ElementsAre("Log"));
     EXPECT_THAT(read.recent_files, testing::ElementsAre("/scenes/b.scene.json", "/scenes/a.scene.json"));
 }
 
@@ -40,7 +42,7 @@ TEST(Preferences, RecentFilesAreUniqueAndNewestFirst) {
 
 TEST(Preferences, DamageGivesDefaults) {
     for (const char* text :
-         {"", "{", "[]", "null", R"({"ui_scale": "big", "view": 3, "recent_files": {"a": 1}})",
+         {"", "{", "[]", "null", R"({"ui_scale": "big", "view": 3, "recent_files": {"a": 1}, "closed_panels": 7})",
           R"({"ui_scale": 1e30, "view": {"tone_map": "?", "exposure": []}, "recent_files": [1, null]})"}) {
         const TemporaryFolder folder;
         std::ofstream(folder.path() / "preferences.json") << text;
@@ -49,6 +51,7 @@ TEST(Preferences, DamageGivesDefaults) {
         EXPECT_EQ(read.view.tone_map, ToneMap::linear) << text;
         EXPECT_EQ(read.view.exposure, 0) << text;
         EXPECT_TRUE(read.recent_files.empty()) << text;
+        EXPECT_TRUE(read.closed_panels.empty()) << text;
     }
 }
 

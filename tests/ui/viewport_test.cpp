@@ -1,5 +1,6 @@
 #include "tests/ui/harness.h"
 
+#include "core/math/srgb.h"
 #include "ui/camera_control.h"
 #include "ui/tone_map.h"
 
@@ -57,7 +58,7 @@ TEST_F(ViewportTest, ShowsTheFilmPixelForPixel) {
             for (int x = 120; x < film.width; x += 3) {
                 const Color expected = tone_mapped(Color(film.at(x, y)), 0.5f, tone_map);
                 for (int channel = 0; channel < 3; ++channel) {
-                    ASSERT_NEAR(shown.at(x, y)[channel], srgb_from_linear(expected[channel]), 1.6f / 255)
+                    ASSERT_NEAR(shown.at(x, y)[channel], linear_to_srgb(expected[channel]), 1.6f / 255)
                         << kToneMapNames[static_cast<int>(tone_map)] << " at " << x << ", " << y;
                 }
             }
@@ -268,7 +269,7 @@ TEST_F(ViewportTest, ZoomShowsPixelsAsSquares) {
     for (int y = 0; y < shown.height; y += 5) {
         for (int x = 0; x < shown.width; x += 5) {
             const Color value(film.at((x - left) / 16, (y - top) / 16));
-            const float expected = srgb_from_linear(tone_mapped(value, 0, ToneMap::linear).x);
+            const float expected = linear_to_srgb(tone_mapped(value, 0, ToneMap::linear).x);
             ASSERT_NEAR(shown.at(x, y).x, expected, 1.6f / 255) << x << ", " << y;
         }
     }

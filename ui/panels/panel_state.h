@@ -16,6 +16,7 @@ struct PanelState {
     bool show_shortcuts = false;
     bool show_quick_start = false;
     bool show_about = false;
+    bool show_lost_work = false;  ///< The question whether to restore it.
 
     std::string scene_filter;
     std::set<ObjectId> collapsed;  ///< Lists that are folded.

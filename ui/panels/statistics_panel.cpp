@@ -1,3 +1,4 @@
+#include "ui/number_text.h"
 #include "ui/panels/panels.h"
 #include "ui/theme.h"
 #include "ui/widgets.h"
@@ -15,29 +16,6 @@ constexpr const char* kRejectionNames[] = {"not a number", "infinite", "negative
 
 ImVec4 to_imgui(const Vec4& color) {
     return {color.x, color.y, color.z, color.w};
-}
-
-std::string with_unit(double value, const char* unit) {
-    constexpr const char* kPrefixes[] = {"", "k", "M", "G", "T"};
-    std::size_t prefix = 0;
-    for (; std::abs(value) >= 1000 && prefix + 1 < std::size(kPrefixes); ++prefix) value /= 1000;
-    return prefix == 0 && value == std::floor(value) ? fmt::format("{:.0f} {}", value, unit)
-                                                     : fmt::format("{:.2f} {}{}", value, kPrefixes[prefix], unit);
-}
-
-std::string grouped(std::uint64_t value) {
-    std::string digits = std::to_string(value);
-    for (auto i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3)
-        digits.insert(static_cast<std::size_t>(i), " ");
-    return digits;
-}
-
-std::string duration(double seconds) {
-    if (seconds < 1) return fmt::format("{:.1f} ms", seconds * 1000);
-    if (seconds < 100) return fmt::format("{:.2f} s", seconds);
-    const auto whole = static_cast<long>(seconds);
-    return whole < 3600 ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
-                        : fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
 void row(const char* name, const std::string& value, const char* tip, const Vec4* color = nullptr) {
@@ -78,23 +56,23 @@ void draw_rendering(const RenderStatistics& s, float width) {
     const bool known = s.estimated_error > 0;
     std::uint64_t rejected = 0;
     for (const std::uint64_t count : s.rejected) rejected += count;
-    row("Samples a pixel", grouped(static_cast<std::uint64_t>(s.spp)), "Camera paths that every pixel has got.");
-    row("Time", duration(s.render_seconds), "Rendering since the last restart, pauses left out.");
-    row("Speed", with_unit(s.samples_per_second, "samples/s"), "Camera paths a second over the whole image.");
-    row("Rays", with_unit(s.rays_per_second, "rays/s"), "Closest-hit and shadow rays a second.");
+    row("Samples a pixel", grouped_text(static_cast<std::uint64_t>(s.spp)), "Camera paths that every pixel has got.");
+    row("Time", duration_text(s.render_seconds), "Rendering since the last restart, pauses left out.");
+    row("Speed", quantity_text(s.samples_per_second, "samples/s"), "Camera paths a second over the whole image.");
+    row("Rays", quantity_text(s.rays_per_second, "rays/s"), "Closest-hit and shadow rays a second.");
     row("Error (relMSE)", known ? fmt::format("{:.2e}", s.estimated_error) : "-", kErrorTip);
     row("Noise", known ? percent(s.estimated_error) : "-",
         "Square root of the error: how far a pixel typically is from the truth.");
-    row("Rejected", grouped(rejected),
+    row("Rejected", grouped_text(rejected),
         "Samples left out because their value made no sense. Zero is right; anything else is a defect.",
         rejected > 0 ? &theme::kError : nullptr);
     for (std::size_t i = 0; i < s.rejected.size(); ++i) {
         if (s.rejected[i] > 0)
-            row(kRejectionNames[i], grouped(s.rejected[i]), "Samples rejected for this cause.", &theme::kError);
+            row(kRejectionNames[i], grouped_text(s.rejected[i]), "Samples rejected for this cause.", &theme::kError);
     }
-    row("Memory", with_unit(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
-    row("Paths", grouped(s.samples), "Camera paths since the last restart.");
-    row("Restarts", grouped(s.restarts), "How often accumulation has begun anew since the program started.");
+    row("Memory", quantity_text(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
+    row("Paths", grouped_text(s.samples), "Camera paths since the last restart.");
+    row("Restarts", grouped_text(s.restarts), "How often accumulation has begun anew since the program started.");
     row("Threads", std::to_string(s.threads), "Workers that trace rays.");
     ImGui::EndTable();
 }
@@ -105,17 +83,18 @@ void draw_structure(const RenderStatistics& s, float width) {
     const auto ratio = [](std::uint64_t count, std::uint64_t of) {
         return of > 0 ? fmt::format("{:.2f}", static_cast<double>(count) / static_cast<double>(of)) : "-";
     };
-    row("Build", duration(s.build_seconds),
+    row("Build", duration_text(s.build_seconds),
         "Time to derive all that the renderer needs from the last edit, trees included.");
-    row("Primitives", grouped(a.primitives), "Shapes and triangles; an instanced mesh counts once.");
-    row("Nodes", grouped(a.nodes), "Inner nodes and leaves of all trees.");
-    row("Leaves", grouped(a.leaves), "Leaves of all trees.");
+    row("Primitives", grouped_text(a.primitives), "Shapes and triangles; an instanced mesh counts once.");
+    row("Nodes", grouped_text(a.nodes), "Inner nodes and leaves of all trees.");
+    row("Leaves", grouped_text(a.leaves), "Leaves of all trees.");
     row("Depth", std::to_string(a.depth), "Of the deepest leaf.");
     row("Refs a primitive", ratio(a.references, a.primitives),
         "How often a primitive lies in a leaf, on average: 1 means that none was cut by a plane.");
-    row("Tree memory", with_unit(static_cast<double>(a.memory_bytes), "B"), "Of the acceleration structure.");
+    row("Tree memory", quantity_text(static_cast<double>(a.memory_bytes), "B"), "Of the acceleration structure.");
     row("Refs a leaf", ratio(a.references, a.leaves), "Primitives that a ray meets in a leaf, on average.");
-    row("References", grouped(a.references), "Primitives over all leaves: one that is cut by a plane lies in several.");
+    row("References", grouped_text(a.references),
+        "Primitives over all leaves: one that is cut by a plane lies in several.");
     ImGui::EndTable();
 }
 

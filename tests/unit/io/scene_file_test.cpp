@@ -3,7 +3,7 @@
 #include "core/io/mesh_io.h"
 #include "core/io/scene_reader.h"
 #include "core/io/scene_writer.h"
-#include "core/io/srgb.h"
+#include "core/math/srgb.h"
 #include "core/scene/scene_edit.h"
 #include "tests/unit/io/temp_folder.h"
 #include "tests/unit/random_scene.h"
