@@ -17,7 +17,8 @@ std::string TextTable::text() const {
         std::string line;
         for (std::size_t i = 0; i < rows_[r].size(); ++i) {
             if (i > 0) line += "  ";
-            line += fmt::format(i < name_columns_ ? "{:<{}}" : "{:>{}}", rows_[r][i], widths[i]);
+            const std::string& cell = rows_[r][i];
+            line += i < name_columns_ ? fmt::format("{:<{}}", cell, widths[i]) : fmt::format("{:>{}}", cell, widths[i]);
         }
         text += line + '\n';
         if (r == 0) text += std::string(line.size(), '-') + '\n';
