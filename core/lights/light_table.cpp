@@ -15,11 +15,12 @@ LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<co
         append_lights(instances[i], *materials[i], lights_);
         if (lights_.size() > first) first_light[i] = first;
     }
-    std::vector<float> powers;
-    for (const AreaLight& light : lights_) powers.push_back(light.power());
-    by_power_ = AliasTable(powers);
-    if (by_power_.empty()) lights_.clear();
-    if (!by_power_.empty()) first_light_ = std::move(first_light);
+    tree_ = LightTree(lights_);
+    if (tree_.empty()) {
+        lights_.clear();
+    } else {
+        first_light_ = std::move(first_light);
+    }
     lights_.shrink_to_fit();
 
     const EnvironmentLight light(environment);
@@ -31,27 +32,10 @@ LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<co
     environment_probability_ = lights_.empty() ? 1.0f : 0.5f;
 }
 
-AliasTable::Draw LightTable::select(const Vec3&, float u) const {
-    return by_power_.draw(u);
-}
-
-float LightTable::selection_probability(const Vec3&, std::uint32_t light) const {
-    return by_power_.probability(light);
-}
-
-std::optional<LightSample> LightTable::sample(const Vec3& p, float u_select, const Vec2& u) const {
-    const float share = 1 - environment_probability_;
-    if (u_select < environment_probability_) return sample_environment(u);
-    const float rest = (u_select - environment_probability_) / share;
-    return sample_area_light(p, select(p, std::min(rest, 1 - kUnitRoundoff)), u);
-}
-
-std::optional<LightSample> LightTable::sample(const Vec3& p, const Vec2& u) const {
-    const float share = 1 - environment_probability_;
+std::optional<LightSample> LightTable::sample(const LightReceiver& receiver, const Vec2& u) const {
     if (u.x < environment_probability_) return sample_environment({u.x / environment_probability_, u.y});
-    const float rest = (u.x - environment_probability_) / share;
-    const AliasTable::Draw draw = select(p, std::min(rest, 1 - kUnitRoundoff));
-    return sample_area_light(p, draw, {draw.remainder, u.y});
+    const float rest = (u.x - environment_probability_) / (1 - environment_probability_);
+    return sample_area_light(receiver, {std::min(rest, 1 - kUnitRoundoff), u.y});
 }
 
 std::optional<LightSample> LightTable::sample_environment(const Vec2& u) const {
@@ -60,19 +44,21 @@ std::optional<LightSample> LightTable::sample_environment(const Vec2& u) const {
     return s;
 }
 
-std::optional<LightSample> LightTable::sample_area_light(const Vec3& p, const AliasTable::Draw& draw,
-                                                         const Vec2& u) const {
-    auto s = lights_[draw.index].sample(p, u);
-    if (s) s->pdf *= (1 - environment_probability_) * draw.probability;
+std::optional<LightSample> LightTable::sample_area_light(const LightReceiver& receiver, const Vec2& u) const {
+    const std::optional<LightTree::Draw> draw = tree_.draw(receiver, u.x);
+    if (!draw) return std::nullopt;
+    auto s = lights_[draw->light].sample(receiver.p, {draw->remainder, u.y});
+    if (s) s->pdf *= (1 - environment_probability_) * draw->probability;
     return s && s->pdf > 0 ? s : std::nullopt;
 }
 
-float LightTable::pdf(const Vec3& p, const Vec3& wi, const Hit& hit, const Vec3& hit_point, const Vec3& ng) const {
+float LightTable::pdf(const LightReceiver& receiver, const Vec3& wi, const Hit& hit, const Vec3& hit_point,
+                      const Vec3& ng) const {
     if (hit.object >= first_light_.size() || first_light_[hit.object] == kNone) return 0;
     const std::uint32_t light = first_light_[hit.object] + hit.primitive;
-    const float selection = selection_probability(p, light);
+    const float selection = tree_.probability(receiver, light);
     if (selection == 0) return 0;
-    return (1 - environment_probability_) * selection * lights_[light].pdf(p, wi, hit_point, ng);
+    return (1 - environment_probability_) * selection * lights_[light].pdf(receiver.p, wi, hit_point, ng);
 }
 
 float LightTable::environment_pdf(const Vec3& wi) const {
@@ -81,7 +67,7 @@ float LightTable::environment_pdf(const Vec3& wi) const {
 
 std::uint64_t LightTable::memory_bytes() const {
     return lights_.capacity() * sizeof(AreaLight) + first_light_.capacity() * sizeof(std::uint32_t) +
-           by_power_.memory_bytes() + (environment_ ? environment_->memory_bytes() : 0);
+           tree_.memory_bytes() + (environment_ ? environment_->memory_bytes() : 0);
 }
 
 }  // namespace rayuela

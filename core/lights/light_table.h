@@ -4,8 +4,8 @@
 #include "core/lights/area_light.h"
 #include "core/lights/environment_distribution.h"
 #include "core/lights/light_sample.h"
+#include "core/lights/light_tree.h"
 #include "core/materials/material.h"
-#include "core/math/distribution.h"
 #include "core/scene/environment.h"
 
 #include <memory>
@@ -29,16 +29,14 @@ public:
     /// Whether there is nothing to sample: then `sample` must not be called, and the table owns no memory.
     bool empty() const { return lights_.empty() && !environment_; }
 
-    /// A direction from `p` towards a light. `u_select` in [0, 1) chooses the light, `u` in [0, 1)^2 the point on it.
-    /// Nothing where the point does not shine towards p.
-    std::optional<LightSample> sample(const Vec3& p, float u_select, const Vec2& u) const;
-    /// The same with one pair for both: u.x chooses, and what that leaves of it places the point. Where `u` is stratified,
-    /// so are the points of each light.
-    std::optional<LightSample> sample(const Vec3& p, const Vec2& u) const;
+    /// A direction from the receiver towards a light: u.x chooses the light, and what that leaves of it and u.y the point.
+    /// Where `u` is stratified, so are the points of each light. Nothing where the point does not shine towards it.
+    std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
 
-    /// Density per solid angle at `p` with which `sample` draws the unit direction `wi`, which hits the surface `hit` at
+    /// Density per solid angle with which `sample` draws the unit direction `wi`, which hits the surface `hit` at
     /// `hit_point` (unit geometric normal `ng` of the front). 0 where it would not.
-    float pdf(const Vec3& p, const Vec3& wi, const Hit& hit, const Vec3& hit_point, const Vec3& ng) const;
+    float pdf(const LightReceiver& receiver, const Vec3& wi, const Hit& hit, const Vec3& hit_point,
+              const Vec3& ng) const;
     /// The same for a direction that hits nothing.
     float environment_pdf(const Vec3& wi) const;
 
@@ -47,15 +45,12 @@ public:
     std::uint64_t memory_bytes() const;
 
 private:
-    /// A light for shading at p. By power alone for now, so that p does not matter.
-    AliasTable::Draw select(const Vec3& p, float u) const;
     std::optional<LightSample> sample_environment(const Vec2& u) const;
-    std::optional<LightSample> sample_area_light(const Vec3& p, const AliasTable::Draw& draw, const Vec2& u) const;
-    float selection_probability(const Vec3& p, std::uint32_t light) const;
+    std::optional<LightSample> sample_area_light(const LightReceiver& receiver, const Vec2& u) const;
 
     std::vector<AreaLight> lights_;           ///< Those of an object lie together, in the order of its primitives.
     std::vector<std::uint32_t> first_light_;  ///< Of an object, or kNone.
-    AliasTable by_power_;                     ///< Over lights_, without the environment.
+    LightTree tree_;                          ///< Over lights_, without the environment.
     std::shared_ptr<const EnvironmentDistribution> environment_;
     float environment_probability_ = 0;
 };

@@ -69,4 +69,8 @@ bool is_specular_only(const Material& material) {
     return std::visit([](const auto& m) { return m.is_specular_only(); }, material);
 }
 
+bool transmits(const Material& material) {
+    return std::visit([](const auto& m) { return m.transmits(); }, material);
+}
+
 }  // namespace rayuela

@@ -57,5 +57,7 @@ bool emits_two_sided(const Material& material);
 bool emits_evenly(const Material& material);
 /// Whether no point of it has a smooth lobe: light samples are wasted on it.
 bool is_specular_only(const Material& material);
+/// Whether light can pass through it.
+bool transmits(const Material& material);
 
 }  // namespace rayuela

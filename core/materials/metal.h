@@ -51,6 +51,7 @@ struct Metal {
     }
     MetalBsdf bsdf(const Vec2& uv) const;
     bool is_specular_only() const { return is_smooth_everywhere(roughness); }
+    bool transmits() const { return false; }
     bool operator==(const Metal&) const = default;
 };
 

@@ -112,6 +112,7 @@ struct Principled {
     }
     PrincipledBsdf bsdf(const Vec2& uv) const;
     bool is_specular_only() const;
+    bool transmits() const { return !(transmission.value == 0); }
     Emission emission() const { return {emissive, emissive_strength, false}; }
     bool operator==(const Principled&) const = default;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/accel/surface_point.h"
+#include "core/lights/light_importance.h"
 #include "core/math/sampler.h"
 
 #include <cstdint>
@@ -18,7 +19,7 @@ struct PathId {
 struct PathState {
     Color throughput{1};
     std::uint32_t path = 0;  ///< Which of the batch.
-    Vec3 origin{0};          ///< Point of the last scattering, not offset.
+    LightReceiver receiver;  ///< At the last scattering, not offset.
     float bsdf_pdf = 0;  ///< Density with which the last scattering chose the direction; 0 for camera and delta lobes.
 };
 

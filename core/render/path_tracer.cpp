@@ -40,6 +40,10 @@ struct PathTracer::Interaction {
     bool front() const { return glm::dot(wo, point.ng) > 0; }
     /// Whether shading and geometric normal agree on which side `wi` leaves: else light would leak through the surface.
     bool consistent(const Vec3& wi, const Vec3& wi_local) const { return glm::dot(wi, point.ng) * wi_local.z > 0; }
+    LightReceiver receiver() const {
+        if (material.transmits) return {point.p, Vec3(0)};
+        return {point.p, wo_local.z < 0 ? -frame.n : frame.n};
+    }
     Vec3 ray_origin(const Vec3& wi) const { return offset_ray_origin(point.p, point.p_error, point.ng, wi); }
 };
 
@@ -149,7 +153,7 @@ Color PathTracer::emitted_light(const PathState& state, const Ray& ray, const Hi
     if (is_black(radiance)) return Color(0);
     const bool weighed = light_sampling_ && state.bsdf_pdf > 0;
     const float light_pdf =
-        weighed ? scene_.lights().pdf(state.origin, ray.direction, hit, at.point.p, at.point.ng) : 0;
+        weighed ? scene_.lights().pdf(state.receiver, ray.direction, hit, at.point.p, at.point.ng) : 0;
     return state.throughput * radiance * scattering_weight(state.bsdf_pdf, light_pdf);
 }
 
@@ -162,7 +166,7 @@ float PathTracer::scattering_weight(float bsdf_pdf, float light_pdf) const {
 
 void PathTracer::sample_light(PathBatch& batch, const PathState& state, const Interaction& at, int bounce) const {
     const Sampler& sampler = batch.samplers[state.path];
-    const auto light = scene_.lights().sample(at.point.p, sampler.get_2d(dimension(bounce, kLight)));
+    const auto light = scene_.lights().sample(at.receiver(), sampler.get_2d(dimension(bounce, kLight)));
     if (!light) return;
     const Vec3 wi = at.frame.to_local(light->wi);
     if (!at.consistent(light->wi, wi)) return;
@@ -192,7 +196,7 @@ bool PathTracer::scatter(PathBatch& batch, PathState& state, Ray& ray, const Int
         if (sampler.get_1d(dimension(bounce, kRoulette)) >= survival) return false;
         state.throughput /= survival;
     }
-    state.origin = at.point.p;
+    state.receiver = at.receiver();
     state.bsdf_pdf = sample->specular ? 0 : sample->pdf;
     ray = {.origin = at.ray_origin(wi), .direction = wi};
     return true;

@@ -26,7 +26,8 @@ PackedMaterial pack(const Material& material) {
             .bsdf = make_bsdf(material, Vec2(0)),
             .textured = textured,
             .emissive = is_emissive(material),
-            .smooth = !is_specular_only(material)};
+            .smooth = !is_specular_only(material),
+            .transmits = transmits(material)};
 }
 
 std::vector<PackedMaterial> pack_all(const Scene& scene) {

@@ -21,6 +21,7 @@ struct PackedMaterial {
     bool textured = false;  ///< The Bsdf and the emission vary over the surface.
     bool emissive = false;
     bool smooth = true;  ///< Light samples can contribute.
+    bool transmits = false;
 };
 
 /// What the kernels read, derived from a Scene: flattened objects, packed materials, trees, lights. Immutable; parts that

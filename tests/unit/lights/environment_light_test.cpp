@@ -175,7 +175,7 @@ TEST(LightTable, SharesSamplesBetweenPanoramaAndLamps) {
     int infinite = 0;
     for (std::uint32_t i = 0; i < 1024; ++i) {
         const Sampler sampler(SamplerKind::sobol, 0, 0, i);
-        const auto s = both.sample(Vec3(0), sampler.get_1d(0), sampler.get_2d(1));
+        const auto s = both.sample({Vec3(0)}, sampler.get_2d(1));
         ASSERT_TRUE(s);
         infinite += s->distance == kInfinity;
         if (s->distance == kInfinity) {

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "core/lights/area_light.h"
+#include "core/lights/light_importance.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace rayuela {
+
+/// A tree over lights with kClusters children a node, descended at random: at each node towards a child in proportion to the
+/// light it is estimated to send to the receiver, by power, distance and the angles on either side. Conty Estevez & Kulla,
+/// "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, in the conservative form of PBRT 4th ed.,
+/// 12.6.3: only what cannot light the receiver is never drawn. Scaling a scene by a power of two changes nothing.
+class LightTree {
+public:
+    struct Draw {
+        std::uint32_t light;
+        float probability;
+        float remainder;  ///< What the choice leaves of u, in [0, 1): uniform, and stratified where u was.
+    };
+
+    LightTree() = default;
+    /// Lights without power are left out. Builds in parallel on the calling thread's task arena.
+    explicit LightTree(std::span<const AreaLight> lights);
+
+    /// Whether there is nothing to draw: then `draw` and `probability` must not be called.
+    bool empty() const { return light_count_ == 0; }
+    /// `u` in [0, 1). Nothing where no light can reach the receiver.
+    std::optional<Draw> draw(const LightReceiver& receiver, float u) const;
+    /// The probability with which `draw` draws the light.
+    float probability(const LightReceiver& receiver, std::uint32_t light) const;
+    std::uint64_t memory_bytes() const { return nodes_.capacity() * sizeof(Node) + places_.capacity() * sizeof(Place); }
+
+private:
+    struct Node {
+        LightClusters clusters;
+        std::array<std::uint32_t, kClusters> child{};  ///< A node, or a light with kLeaf added.
+        std::uint32_t parent = kNone, lane_of_parent = 0;
+    };
+    /// The lane of a light.
+    struct Place {
+        std::uint32_t node = kNone, lane = 0;
+    };
+    struct Cluster;
+    struct Builder;
+
+    static constexpr std::uint32_t kLeaf = 0x80000000u;
+
+    std::vector<Node> nodes_;    ///< The root first. None where there is but one light.
+    std::vector<Place> places_;  ///< Of each light.
+    std::uint32_t light_count_ = 0, only_light_ = 0;
+};
+
+}  // namespace rayuela
