@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace rayuela {
@@ -19,6 +20,7 @@ namespace {
 constexpr float kSquarePixelZoom = 1.999f;
 constexpr Vec3 kBackground{0.066f, 0.070f, 0.075f};
 constexpr float kMaxDivisor = 4;
+constexpr int kTileSide = 64;
 
 /// `constants` goes below the first line, which is the version.
 unsigned compile(GLenum kind, std::string_view name, const std::string& constants) {
@@ -61,6 +63,31 @@ unsigned make_texture(int filter) {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     return texture;
+}
+
+/// Whether two images of one size differ within [low, high).
+bool differ(const Image& a, const Image& b, glm::ivec2 low, glm::ivec2 high) {
+    const auto bytes = static_cast<std::size_t>(high.x - low.x) * sizeof(Vec4);
+    for (int y = low.y; y < high.y; ++y) {
+        if (std::memcmp(&a.at(low.x, y), &b.at(low.x, y), bytes) != 0) return true;
+    }
+    return false;
+}
+
+/// Calls `upload(low, high)` for runs of neighbouring tiles that have changed; all of them where there is nothing before.
+template <typename Upload>
+void for_each_changed_part(const Image* before, const Image& now, const Upload& upload) {
+    for (int top = 0; top < now.height; top += kTileSide) {
+        const int bottom = std::min(top + kTileSide, now.height);
+        int run = 0;  // Where the run of changed tiles begins that ends at `left`.
+        for (int left = 0; left < now.width; left += kTileSide) {
+            const int right = std::min(left + kTileSide, now.width);
+            if (!before || differ(*before, now, {left, top}, {right, bottom})) continue;
+            if (run < left) upload({run, top}, {left, bottom});
+            run = right;
+        }
+        if (run < now.width) upload({run, top}, {now.width, bottom});
+    }
 }
 
 /// By how much smaller than it is shown a preview may be drawn: two pixels for each of its large ones.
@@ -116,10 +143,7 @@ Display::Picture Display::draw(const std::shared_ptr<const Frame>& frame, const 
     if (shown.version == drawn_version_ && request == drawn_) return {target_, lower_right_};
 
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    if (shown.version != film_version_ && !shown.image.pixels.empty()) {
-        upload_film(shown.image);
-        film_version_ = shown.version;
-    }
+    if (!shown.image.pixels.empty() && (!uploaded_ || shown.version != uploaded_->version)) upload_film(frame);
     const bool outlines = request.outline_width > 0 && !request.outlined.empty() && !shown.object_ids.empty();
     if (outlines && (shown.version != mask_version_ || request.outlined != masked_)) {
         upload_mask(shown, request.outlined);
@@ -137,16 +161,22 @@ Display::Picture Display::draw(const std::shared_ptr<const Frame>& frame, const 
     return {target_, lower_right_};
 }
 
-void Display::upload_film(const Image& image) {
+void Display::upload_film(const std::shared_ptr<const Frame>& frame) {
     const auto start = std::chrono::steady_clock::now();
+    const Image& image = frame->image;
     const glm::ivec2 size(image.width, image.height);
+    const Image* before = uploaded_ && size == film_size_ ? &uploaded_->image : nullptr;
     glBindTexture(GL_TEXTURE_2D, film_);
-    if (size == film_size_) {
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, image.pixels.data());
-    } else {
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, image.pixels.data());
-        film_size_ = size;
-    }
+    if (!before) glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, nullptr);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, size.x);
+    for_each_changed_part(before, image, [&](glm::ivec2 low, glm::ivec2 high) {
+        const glm::ivec2 extent = high - low;
+        glTexSubImage2D(GL_TEXTURE_2D, 0, low.x, low.y, extent.x, extent.y, GL_RGBA, GL_FLOAT, &image.at(low.x, low.y));
+        statistics_.uploaded_pixels += static_cast<std::uint64_t>(extent.x) * static_cast<std::uint64_t>(extent.y);
+    });
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    film_size_ = size;
+    uploaded_ = frame;
     ++statistics_.uploads;
     statistics_.upload_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -24,8 +24,8 @@ struct DisplayRequest {
     bool operator==(const DisplayRequest&) const = default;
 };
 
-/// Draws frames into a texture with shaders/display.frag. What has not changed is neither uploaded nor drawn again, and
-/// a preview, which has little detail, is drawn small: enlarging it is cheap where OpenGL runs in software.
+/// Draws frames into a texture with shaders/display.frag. What has not changed is neither uploaded (by tiles) nor drawn
+/// again, and a preview, which has little detail, is drawn small: enlarging it is cheap where OpenGL runs in software.
 /// Lives and dies with its OpenGL context current.
 class Display {
 public:
@@ -43,13 +43,14 @@ public:
 
     struct Statistics {
         std::uint64_t uploads = 0;
+        std::uint64_t uploaded_pixels = 0;
         std::uint64_t draws = 0;
         double upload_seconds = 0;  ///< Of the last upload.
     };
     const Statistics& statistics() const { return statistics_; }
 
 private:
-    void upload_film(const Image& image);
+    void upload_film(const std::shared_ptr<const Frame>& frame);
     void upload_mask(const Frame& frame, const std::vector<ObjectId>& outlined);
     void prepare_target(glm::ivec2 size, bool enlarged);
     void draw_film(const Frame& frame, const DisplayRequest& request);
@@ -62,10 +63,11 @@ private:
     unsigned vertex_array_ = 0;
     unsigned film_ = 0, mask_ = 0;
     unsigned target_ = 0, framebuffer_ = 0;
+    std::shared_ptr<const Frame> uploaded_;  ///< What `film_` holds.
     glm::ivec2 film_size_{0}, mask_size_{0}, target_size_{0};
     glm::ivec4 mask_bounds_{0};
     Vec2 lower_right_{1, 0};
-    std::uint64_t film_version_ = 0, mask_version_ = 0, drawn_version_ = 0;
+    std::uint64_t mask_version_ = 0, drawn_version_ = 0;
     std::vector<ObjectId> masked_;
     DisplayRequest drawn_;
     Statistics statistics_;

@@ -354,6 +354,49 @@ TEST_F(ViewportTest, APreviewIsDrawnSmallAndInItsPlace) {
     }
 }
 
+TEST_F(ViewportTest, OnlyChangedTilesAreUploaded) {
+    Scene scene;
+    scene.film.width = 200;
+    scene.film.height = 130;
+    Frame frame;
+    frame.scene = std::make_shared<const Scene>(scene);
+    frame.image = {200, 130, std::vector<Vec4>(200 * 130, Vec4(0.1f, 0.2f, 0.3f, 1)), {}};
+    Display display;
+    DisplayRequest request;
+    request.size = {200, 130};
+    std::uint64_t uploaded = 0;
+    const auto pixels_of_next = [&] {
+        ++frame.version;
+        display.draw(std::make_shared<const Frame>(frame), request);
+        return display.statistics().uploaded_pixels - std::exchange(uploaded, display.statistics().uploaded_pixels);
+    };
+    const auto texture_is_the_image = [&] {
+        std::vector<std::uint8_t> texels(200 * 130 * 4);
+        glBindTexture(GL_TEXTURE_2D, display.draw(std::make_shared<const Frame>(frame), request).texture);
+        glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+        for (int y = 0; y < 130; ++y) {
+            for (int x = 0; x < 200; ++x) {
+                const float expected = linear_to_srgb(frame.image.at(x, y).x) * 255;
+                const auto at = static_cast<std::size_t>(4 * (200 * (129 - y) + x));
+                if (std::abs(static_cast<float>(texels[at]) - expected) > 1.6f) return false;
+            }
+        }
+        return true;
+    };
+    EXPECT_EQ(pixels_of_next(), 200u * 130u);
+    EXPECT_EQ(pixels_of_next(), 0u) << "another version of the same";
+    // Tiles have 64 pixels a side: the first, and two neighbours in the last row of tiles, which is 2 pixels high.
+    frame.image.at(63, 63).x = 0.8f;
+    EXPECT_EQ(pixels_of_next(), 64u * 64u);
+    frame.image.at(191, 129).x = 0.7f;
+    frame.image.at(192, 128).x = 0.6f;
+    EXPECT_EQ(pixels_of_next(), (64u + 8u) * 2u);
+    EXPECT_TRUE(texture_is_the_image());
+    for (Vec4& pixel : frame.image.pixels) pixel.x *= 0.5f;
+    EXPECT_EQ(pixels_of_next(), 200u * 130u);
+    EXPECT_TRUE(texture_is_the_image());
+}
+
 class DenseDisplayTest : public UiTest {
 protected:
     DenseDisplayTest() : UiTest({1800, 1100}, 2) {}
