@@ -104,7 +104,8 @@ DisplayRequest divided(DisplayRequest request, int divisor) {
     request.origin *= factor;
     request.zoom *= factor;
     request.checker_size *= factor;
-    request.outline_width *= factor;
+    // Thinner than a pixel it would be broken.
+    if (request.outline_width > 0) request.outline_width = std::max(request.outline_width * factor, 1.0f);
     return request;
 }
 
