@@ -52,14 +52,17 @@ Surface surface_of(const Sphere& sphere, const GeometryInstance& instance, const
     const RayD world(ray);
     const SphereD local = baked ? *baked : SphereD{Vec3d(sphere.center), sphere.radius};
     const RayD local_ray = baked ? world : to_world.inverse().ray(world);
-    const Vec3d n = glm::normalize(local_ray.at(hit.t) - local.center);
-    const Vec3d p = local.center + local.radius * n;
+    // Down to the surface from a point close to it: from the centre up, a ground of large radius would lose digits.
+    const Vec3d along = local_ray.at(hit.t);
+    const double distance = glm::length(along - local.center);
+    const Vec3d n = (along - local.center) / distance;
+    const double height = squared_distance_excess(along, local.center, local.radius) / (distance + local.radius);
+    const Vec3d p = along - height * n;
 
     Surface surface;
     surface.p = baked ? p : to_world.point(p);
     surface.ng = baked ? n : NormalTransform(to_world)(n);
-    surface.size =
-        max_abs(surface.p) + max_abs(to_world.translation) + (baked ? baked->radius : max_abs(to_world.vector(p)));
+    surface.size = max_abs(surface.p) + (baked ? 0.0 : max_abs(to_world.translation) + max_abs(to_world.vector(p)));
 
     const Vec3d own = baked ? glm::transpose(to_world.linear) * n : n;
     const Vec3d unit = glm::normalize(own);

@@ -20,25 +20,28 @@ DielectricBsdf Dielectric::bsdf(const Vec2& uv) const {
 
 BsdfValue DielectricBsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
     if (!has_smooth_lobe() || wo.z * wi.z == 0) return {};
-    const float eta = wo.z > 0 ? ior : 1 / ior;
+    const double eta = wo.z > 0 ? double{ior} : 1 / double{ior};
     const bool reflects = wo.z * wi.z > 0;
-    const Vec3 o = upper(wo);
-    const Vec3 i = wo.z > 0 ? wi : Vec3(wi.x, wi.y, -wi.z);
+    const Vec3 o = upper(wo), i = upper(wi);
 
-    Vec3 m = reflects ? o + i : o + eta * i;
-    m = glm::normalize(m.z < 0 ? -m : m);
-    const float o_m = glm::dot(o, m), i_m = glm::dot(i, m);
+    // In double: the facet of a refraction follows from a difference of directions.
+    const Vec3d od = glm::normalize(Vec3d(o)), id = glm::normalize(Vec3d(i.x, i.y, reflects ? i.z : -i.z));
+    const Vec3d half = reflects ? od + id : od + eta * id;
+    const Vec3d md = glm::normalize(half.z < 0 ? -half : half);
+    const double o_m = glm::dot(od, md), i_m = glm::dot(id, md);
     if (!(o_m > 0) || reflects != (i_m > 0)) return {};  // facets seen from behind
 
-    const float fresnel = fresnel_dielectric(std::fmin(o_m, 1.0f), eta);
-    float pdf;
+    const Vec3 m(md);
+    const double fresnel = fresnel_dielectric(std::fmin(o_m, 1.0), eta);
+    double pdf = 0;
     if (reflects) {
         pdf = fresnel * ggx.reflection_pdf(o, m);
     } else {
-        const float scale = i_m + o_m / eta;  // of half vectors to directions, Walter's eq. 17
-        pdf = (1 - fresnel) * ggx.visible_pdf(o, m) * -i_m / (scale * scale);
+        const double scale = i_m + o_m / eta;  // of half vectors to directions, Walter's eq. 17
+        const double jacobian = -i_m / (scale * scale);
+        pdf = (1 - fresnel) * ggx.reflection_pdf(o, m) * 4 * o_m * jacobian;
     }
-    return {tint * (ggx.g1(upper(wi)) * pdf), pdf};
+    return {tint * (ggx.g1(i) * static_cast<float>(pdf)), static_cast<float>(pdf)};
 }
 
 std::optional<BsdfSample> DielectricBsdf::sample(const Vec3& wo, float u_lobe, const Vec2& u) const {
@@ -46,7 +49,7 @@ std::optional<BsdfSample> DielectricBsdf::sample(const Vec3& wo, float u_lobe, c
     const float eta = wo.z > 0 ? ior : 1 / ior;
     const Vec3 o = upper(wo);
     const Vec3 m = smooth ? Vec3(0, 0, 1) : ggx.sample_visible(o, u);
-    const float fresnel = fresnel_dielectric(glm::clamp(glm::dot(o, m), 0.0f, 1.0f), eta);
+    const auto fresnel = static_cast<float>(fresnel_dielectric(glm::clamp(glm::dot(o, m), 0.0f, 1.0f), eta));
     const bool reflects = u_lobe < fresnel;
 
     Vec3 wi = reflects ? reflect(o, m) : refract(o, m, eta);

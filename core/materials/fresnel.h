@@ -10,18 +10,17 @@ namespace rayuela {
 /// of the other side relative to this one; 1 at total reflection. Fresnel's equations in a form without cancellation:
 /// with g = eta cos_t = sqrt(eta^2 - sin_i^2),
 ///     r_s = -(eta^2 - 1) / (cos_i + g)^2,   r_p = (eta^2 - 1) (eta^2 cos_i^2 - sin_i^2) / (eta^2 cos_i + g)^2.
-inline float fresnel_dielectric(float cos_i, float eta) {
-    const float eta2 = eta * eta;
-    const float k = (eta - 1) * (eta + 1);
-    const float sin2_i = (1 - cos_i) * (1 + cos_i);
-    const float g2 = eta2 - sin2_i;
-    if (!(g2 > 0)) return k == 0 ? 0.0f : 1.0f;
-    const float g = std::sqrt(g2);
-    const float s = cos_i + g;
-    const float p = eta2 * cos_i + g;
-    const float r_s = k / (s * s);
-    const float r_p = k / p * ((eta2 * cos_i * cos_i - sin2_i) / p);
-    return std::fmin(0.5f * (r_s * r_s + r_p * r_p), 1.0f);
+/// In double: close to total reflection g is a difference of almost equal numbers.
+inline double fresnel_dielectric(double cos_i, double eta) {
+    const double eta2 = eta * eta;
+    const double k = (eta - 1) * (eta + 1);
+    const double sin2_i = (1 - cos_i) * (1 + cos_i);
+    const double g2 = eta2 - sin2_i;
+    if (!(g2 > 0)) return k == 0 ? 0.0 : 1.0;
+    const double g = std::sqrt(g2);
+    const double s = cos_i + g, p = eta2 * cos_i + g;
+    const double r_s = k / (s * s), r_p = k * (eta2 * cos_i * cos_i - sin2_i) / (p * p);
+    return std::fmin(0.5 * (r_s * r_s + r_p * r_p), 1.0);
 }
 
 /// Reflectance at normal incidence.

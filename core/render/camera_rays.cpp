@@ -40,19 +40,20 @@ CameraRays::CameraRays(const Camera& camera, double aspect)
     const double half_height = std::tan(glm::radians(static_cast<double>(camera.vfov)) / 2);
     const double half_width = half_height * aspect;
     forward_ = Vec3(forward);
-    right_ = Vec3(right);
-    up_ = Vec3(up);
-    corner_ = Vec3(forward - half_width * right + half_height * up);
-    across_ = Vec3(2 * half_width * right);
-    down_ = Vec3(-2 * half_height * up);
+    right_ = right;
+    up_ = up;
+    corner_ = forward - half_width * right + half_height * up;
+    across_ = 2 * half_width * right;
+    down_ = -2 * half_height * up;
 }
 
 Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
-    const Vec3 direction = corner_ + position.x * across_ + position.y * down_;
-    if (lens_radius_ == 0) return {.origin = origin_, .direction = glm::normalize(direction)};
+    const Vec3d direction = corner_ + double{position.x} * across_ + double{position.y} * down_;
+    if (lens_radius_ == 0) return {.origin = origin_, .direction = Vec3(glm::normalize(direction))};
     // Relative to the lens centre: the distance to the focus plane is not lost in the camera's coordinates.
-    const Vec3 offset = lens_radius_ * (lens.x * right_ + lens.y * up_);
-    return {.origin = origin_ + offset, .direction = glm::normalize(focus_distance_ * direction - offset)};
+    const Vec3d offset = lens_radius_ * (double{lens.x} * right_ + double{lens.y} * up_);
+    return {.origin = Vec3(Vec3d(origin_) + offset),
+            .direction = Vec3(glm::normalize(focus_distance_ * direction - offset))};
 }
 
 Vec2 sample_filter(PixelFilter filter, const Vec2& u) {

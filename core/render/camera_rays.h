@@ -19,10 +19,11 @@ public:
     const Vec3& forward() const { return forward_; }
 
 private:
+    // In double: through a long lens the pixels are not much farther apart than floats.
     Vec3 origin_, forward_;
-    Vec3 right_, up_;              ///< Unit.
-    Vec3 corner_, across_, down_;  ///< Image plane at distance 1, relative to the origin.
-    float lens_radius_, focus_distance_;
+    Vec3d right_, up_;              ///< Unit.
+    Vec3d corner_, across_, down_;  ///< Image plane at distance 1, relative to the origin.
+    double lens_radius_, focus_distance_;
 };
 
 /// Importance sampling of the pixel filter: the offset from the pixel's centre, in pixels, for `u` in [0, 1)^2. All samples

@@ -51,6 +51,13 @@ std::optional<TracedShape> traced_shape(const Shape& shape) {
         shape);
 }
 
+/// Order in which objects are numbered: ties of distance go to the lowest. Where a body stands on a surface the surface
+/// is met, in whatever order the scene lists them: light that left the body there would start beyond the surface.
+int tie_rank(const GeometryInstance& instance) {
+    if (std::holds_alternative<Sphere>(instance.shape) || std::holds_alternative<Box>(instance.shape)) return 2;
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(instance.shape) ? 1 : 0;
+}
+
 std::uint64_t bytes(const TriangleMesh& mesh) {
     return mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3) + mesh.uvs.size() * sizeof(Vec2) +
            mesh.triangles.size() * sizeof(glm::uvec3);
@@ -67,6 +74,7 @@ void RenderScene::flatten(std::vector<GeometryInstance>& instances, FlatObjects&
         Affine to_world;
         bool visible;
     };
+    std::vector<std::pair<GeometryInstance, FlatObject>> found;
     std::unordered_map<ObjectId, Placement> lists;  // Parents come before their children.
     std::unordered_map<MaterialId, std::uint32_t> material_index{{MaterialId{}, 0}};
     for (const MaterialEntry& entry : scene_->materials) {
@@ -84,13 +92,17 @@ void RenderScene::flatten(std::vector<GeometryInstance>& instances, FlatObjects&
             for (const GltfPart& part : gltf->geometry->parts) {
                 const MaterialId own =
                     part.material < gltf->materials.size() ? gltf->materials[part.material] : MaterialId{};
-                instances.push_back({part.mesh, placement.to_world * part.to_file});
-                objects.push_back({object.id, material_index.at(object.material ? object.material : own)});
+                found.push_back({{part.mesh, placement.to_world * part.to_file},
+                                 {object.id, material_index.at(object.material ? object.material : own)}});
             }
         } else if (auto shape = traced_shape(object.shape)) {
-            instances.push_back({*std::move(shape), placement.to_world});
-            objects.push_back({object.id, material_index.at(object.material)});
+            found.push_back({{*std::move(shape), placement.to_world}, {object.id, material_index.at(object.material)}});
         }
+    }
+    std::ranges::stable_sort(found, {}, [](const auto& one) { return tie_rank(one.first); });
+    for (auto& [instance, object] : found) {
+        instances.push_back(std::move(instance));
+        objects.push_back(object);
     }
 }
 

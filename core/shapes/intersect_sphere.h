@@ -27,7 +27,11 @@ inline bool intersect_sphere(const SphereD& sphere, const RayD& ray, const TRang
     if (!(discriminant >= 0)) return false;
 
     const double distance = glm::length(from_center);
-    const double c = (distance - sphere.radius) * (distance + sphere.radius);
+    double c = (distance - sphere.radius) * (distance + sphere.radius);
+    // Close to the surface that difference is what the roundings have left of it.
+    constexpr double kCancels = 0x1p-20;
+    if (std::fabs(distance - sphere.radius) <= kCancels * sphere.radius)
+        c = squared_distance_excess(ray.origin, sphere.center, sphere.radius);
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
     double t0 = q == 0 ? 0 : c / q;
     double t1 = q / a;

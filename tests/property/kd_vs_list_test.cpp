@@ -1,31 +1,10 @@
-#include "tests/support/accel_scenes.h"
+#include "tests/support/hits.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <bit>
-
 namespace rayuela::test {
 namespace {
-
-bool identical(const Hit& a, const Hit& b) {
-    return std::bit_cast<std::uint32_t>(a.t) == std::bit_cast<std::uint32_t>(b.t) &&
-           std::bit_cast<std::uint32_t>(a.u) == std::bit_cast<std::uint32_t>(b.u) &&
-           std::bit_cast<std::uint32_t>(a.v) == std::bit_cast<std::uint32_t>(b.v) && a.object == b.object &&
-           a.primitive == b.primitive;
-}
-
-struct Answers {
-    std::vector<Hit> hits;
-    std::vector<std::uint8_t> blocked;
-};
-
-Answers trace(const Accelerator& accelerator, const std::vector<Ray>& rays) {
-    Answers answers{std::vector<Hit>(rays.size()), std::vector<std::uint8_t>(rays.size())};
-    accelerator.intersect(rays, answers.hits);
-    accelerator.occluded(rays, answers.blocked);
-    return answers;
-}
 
 ::testing::AssertionResult same_answers(const Answers& expected, const Answers& actual, const std::vector<Ray>& rays) {
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include "core/scene/scene_edit.h"
 #include "tests/render_testing.h"
+#include "tests/support/random_edit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -334,43 +335,6 @@ TEST(Session, NoShadowRaysWithoutLightsOrBetweenMirrors) {
     EXPECT_EQ(render_headless(scene)->statistics.shadow_rays, 0u);
     add_object(scene, Plane{}, {});
     EXPECT_GT(render_headless(scene)->statistics.shadow_rays, 0u);
-}
-
-/// A random edit of any kind that the panels can make.
-SceneEdit random_edit(const Scene& scene, std::mt19937& random) {
-    const auto uniform = [&](float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(random); };
-    const auto pick_one = [&](const auto& list) { return list[random() % list.size()]; };
-    Camera camera = scene.camera;
-    RenderSettings render = scene.render;
-    Object object = pick_one(scene.objects);
-    MaterialEntry material = pick_one(scene.materials);
-    switch (random() % 9) {
-        case 0:
-            camera.position += Vec3(uniform(-0.2f, 0.2f));
-            return SetCamera{camera};
-        case 1:
-            object.transform.translate.x += uniform(-0.3f, 0.3f);
-            return SetObject{object};
-        case 2:
-            object.visible = !object.visible;
-            return SetObject{object};
-        case 3:
-            object.material = pick_one(scene.materials).id;
-            return SetObject{object};
-        case 4:
-            material.material = pick_one(scene.materials).material;
-            return SetMaterial{material};
-        case 5:
-            render.accel.leaf_size = 1 << (random() % 7);
-            return SetRenderSettings{render};
-        case 6:
-            render.max_bounces = static_cast<int>(random() % 9);
-            return SetRenderSettings{render};
-        case 7:
-            return AddObject{{.shape = Sphere{Vec3(uniform(-2, 2), 0.3f, 2), 0.3f}, .material = material.id}};
-        default:
-            return SetEnvironment{ConstantEnvironment{Color(uniform(0, 1))}};
-    }
 }
 
 /// Whatever happened before, the image is that of a fresh start on the final scene.

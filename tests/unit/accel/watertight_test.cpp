@@ -1,32 +1,10 @@
 #include "core/shapes/intersect_triangle.h"
-#include "tests/support/accel_scenes.h"
+#include "tests/support/closed_meshes.h"
 
 #include <gtest/gtest.h>
 
 namespace rayuela::test {
 namespace {
-
-MeshPtr make_tetrahedron() {
-    return make_mesh({Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)},
-                     {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}});
-}
-
-MeshPtr make_cube() {
-    std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1});
-    return make_mesh(corners, {{0, 2, 1},
-                               {1, 2, 3},
-                               {4, 5, 6},
-                               {5, 7, 6},
-                               {0, 1, 4},
-                               {1, 5, 4},
-                               {2, 6, 3},
-                               {3, 6, 7},
-                               {0, 4, 2},
-                               {2, 4, 6},
-                               {1, 3, 5},
-                               {3, 7, 5}});
-}
 
 struct Crossings {
     int front = 0, back = 0;
@@ -45,20 +23,6 @@ Crossings count_hits(const TriangleMesh& mesh, const Ray& ray) {
     return crossings;
 }
 
-/// A point of an edge (half), a vertex (a quarter) or anywhere near the mesh.
-Vec3 aim(const TriangleMesh& mesh, Random& random) {
-    const glm::uvec3 t = mesh.triangles[random.bits() % mesh.triangles.size()];
-    const Vec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
-    switch (random.integer(0, 3)) {
-        case 0:
-            return a;
-        case 1:
-            return glm::mix(a, glm::mix(b, c, random.uniform()), random.uniform());
-        default:
-            return glm::mix(a, b, random.uniform());
-    }
-}
-
 class Watertight : public ::testing::TestWithParam<std::tuple<int, float>> {};
 
 /// A ray from inside a closed mesh always meets it, wherever the mesh lies and however large it is.
@@ -68,9 +32,7 @@ TEST_P(Watertight, NoRayLeavesAClosedMesh) {
     const int count = which == 2 ? 4000 : 30000;
     for (const Vec3 center : {Vec3(0), Vec3(148376, 1234, -223423), Vec3(1e6f)}) {
         if (scale < 1 && center != Vec3(0)) continue;  // Vertices would coincide in float.
-        std::vector<Vec3> positions;
-        for (const Vec3& p : unit->positions) positions.push_back(center + scale * p);
-        const MeshPtr mesh = make_mesh(positions, unit->triangles);
+        const MeshPtr mesh = moved(*unit, scale, center);
         Random random(17);
         int leaks = 0;
         for (int i = 0; i < count; ++i) {

@@ -179,7 +179,7 @@ TEST(Dielectric, SmoothSnellAndFresnel) {
     for (const double angle : {10.0, 60.0, 150.0, 120.0}) {
         const Vec3 wo = direction(angle);
         const float eta = wo.z > 0 ? 1.5f : 1 / 1.5f;
-        const float r = fresnel_dielectric(std::abs(wo.z), eta);
+        const auto r = static_cast<float>(fresnel_dielectric(std::abs(wo.z), eta));
         const auto reflected = bsdf.sample(wo, 0, Vec2(0.5f));
         ASSERT_TRUE(reflected);
         EXPECT_EQ(reflected->weight, Color(0.9f, 0.8f, 0.7f));

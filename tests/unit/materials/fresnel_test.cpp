@@ -22,7 +22,7 @@ TEST(Fresnel, AgreesWithLongDouble) {
         for (int i = 0; i <= 1000; ++i) {
             const float cosine = static_cast<float>(i) / 1000;
             const long double exact = reference(cosine, eta);
-            const float value = fresnel_dielectric(cosine, eta);
+            const double value = fresnel_dielectric(cosine, eta);
             ASSERT_GE(value, 0);
             ASSERT_LE(value, 1);
             // Just inside the critical angle R falls from 1 with infinite slope: there rounding of cos^2 shows.

@@ -2,44 +2,14 @@
 #include "core/shapes/intersect_plane.h"
 #include "core/shapes/intersect_sphere.h"
 #include "core/shapes/intersect_triangle.h"
-#include "tests/support/accel_scenes.h"
+#include "tests/support/oracle.h"
 
 #include <gtest/gtest.h>
-
-#include <optional>
 
 namespace rayuela::test {
 namespace {
 
-using Real = long double;
-using Vec3l = glm::vec<3, Real>;
-
 constexpr TRange kAll{};
-constexpr Real kU = 0x1p-24L;
-
-float log_uniform(Random& random, float lo, float hi) {
-    return std::exp(random.uniform(std::log(lo), std::log(hi)));
-}
-
-struct SphereOracle {
-    bool near_tangent;
-    std::optional<Real> t;
-};
-
-/// The quadratic in long double, from the point of closest approach.
-SphereOracle solve_sphere(const Vec3& center, float radius, const Ray& ray) {
-    const Vec3l d(ray.direction), o = Vec3l(ray.origin) - Vec3l(center);
-    const Real a = glm::dot(d, d), b = -glm::dot(o, d) / a;
-    const Vec3l closest = o + b * d;
-    const Real distance = std::sqrt(glm::dot(closest, closest)), r = radius;
-    const bool near_tangent = std::fabs(distance - r) <= 4 * kU * r;
-    if (distance > r) return {near_tangent, {}};
-    const Real half = std::sqrt((r - distance) * (r + distance) / a);
-    for (const Real t : {b - half, b + half}) {
-        if (t >= ray.t_min) return {near_tangent, t};
-    }
-    return {near_tangent, {}};
-}
 
 TEST(Sphere, AgreesWithLongDoubleOverTwelveDecades) {
     Random random(1);
