@@ -168,18 +168,17 @@ Outcome furnace_compensated(double scale) {
             }
         }
     }
-    return for_batches(
-        white.size() * kAngles.size(), 37, 1,
-        [&](Random& random, std::uint64_t number, std::uint64_t, Outcome& outcome) {
-            const MaterialCase& material = white[number / kAngles.size()];
-            const double angle = kAngles[number % kAngles.size()];
-            double error = 0;
-            const double albedo =
-                measure_albedo(make_bsdf(material.material, Vec2(0)), direction(angle), samples, random, error);
-            outcome.cases += samples - 1;
-            const double beyond = std::max(0.99 - albedo - 3 * error, albedo - 1 - 3 * error) - 1e-6;
-            outcome.measure(std::max(beyond, 0.0));
-        });
+    return for_batches(white.size() * kAngles.size(), 37, 1,
+                       [&](Random& random, std::uint64_t number, std::uint64_t, Outcome& outcome) {
+                           const MaterialCase& material = white[number / kAngles.size()];
+                           const double angle = kAngles[number % kAngles.size()];
+                           double error = 0;
+                           const double albedo = measure_albedo(make_bsdf(material.material, Vec2(0)), direction(angle),
+                                                                samples, random, error);
+                           outcome.cases += samples - 1;
+                           const double beyond = std::max(0.99 - albedo - 3 * error, albedo - 1 - 3 * error) - 1e-6;
+                           outcome.measure(std::max(beyond, 0.0));
+                       });
 }
 
 /// f(a, b) = f(b, a), through a boundary with the squares of the indices.

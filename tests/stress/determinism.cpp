@@ -3,10 +3,13 @@
 #include "tests/support/random_edit.h"
 
 #include <fmt/format.h>
+#include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
 #include <chrono>
+#include <cstddef>
 #include <fstream>
+#include <span>
 #include <thread>
 
 namespace rayuela::stress {
@@ -69,6 +72,34 @@ Outcome threads_and_order(double scale) {
                        [&] { return fmt::format("{} threads", threads); });
         ++outcome.cases;
     }
+    return outcome;
+}
+
+std::uint64_t fnv1a(const std::vector<Vec3d>& values) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const std::byte byte : std::as_bytes(std::span(values))) {
+        hash ^= static_cast<std::uint64_t>(byte);
+        hash *= 0x100000001b3u;
+    }
+    return hash;
+}
+
+/// Each instruction set of this machine. The note is for the comparison of compilers: tests/stress/compilers.sh.
+Outcome instruction_sets(double scale) {
+    const int samples = static_cast<int>(scaled(64, scale, 2));
+    const Scene scene = mixed_scene(128, 96);
+    const int threads = tbb::this_task_arena::max_concurrency();
+    const auto expected = means(render(scene, samples, {}, threads)->film());
+    Outcome outcome;
+    outcome.note = fmt::format("film of {} samples: {:016x}", samples, fnv1a(expected));
+    const std::int64_t supported = hwy::SupportedTargets();
+    for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
+        hwy::GetChosenTarget().Update(rest & -rest);
+        outcome.expect(means(render(scene, samples, {}, threads)->film()) == expected,
+                       [&] { return hwy::TargetName(rest & -rest); });
+        ++outcome.cases;
+    }
+    hwy::GetChosenTarget().Update(supported);
     return outcome;
 }
 
@@ -167,6 +198,7 @@ Outcome economy(double) {
 std::vector<StressTest> determinism_tests() {
     return {{20, "edits while rendering end in the image of a fresh start", "-", 0, edit_storm},
             {57, "1 to 64 threads: identical films", "-", 0, threads_and_order},
+            {58, "instruction sets: identical films", "-", 0, instruction_sets},
             {59, "memory under edits", "growth", 0.01, memory_under_edits},
             {59, "error falls as N^-1/2", "|slope + 1/2|", 0.02, convergence},
             {60, "what a scene lacks costs nothing, by the counters", "-", 0, economy}};

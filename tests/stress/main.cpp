@@ -72,6 +72,7 @@ void print_row(const StressTest& test, const Outcome& outcome, double seconds) {
                outcome.cases, outcome.failures, outcome.worst, test.required, test.figure,
                test.passed(outcome) ? "pass" : "MISS", seconds);
     if (!outcome.failure.empty()) fmt::print("     first failure: {}\n", outcome.failure);
+    if (!outcome.note.empty()) fmt::print("     {}\n", outcome.note);
     std::fflush(stdout);
 }
 
@@ -82,7 +83,8 @@ nlohmann::json to_json(const StressTest& test, const Outcome& outcome, double se
             {"cases", outcome.cases},    {"failures", outcome.failures},
             {"figure", test.figure},     {"worst", number(outcome.worst)},
             {"required", test.required}, {"passed", test.passed(outcome)},
-            {"seconds", seconds},        {"first_failure", outcome.failure}};
+            {"seconds", seconds},        {"first_failure", outcome.failure},
+            {"note", outcome.note}};
 }
 
 int run(const Options& options) {

@@ -187,8 +187,8 @@ Outcome shadow_rays(double scale) {
                 const Hit hit = intersect(*list, down);
                 if (hit.object != 1) continue;
                 const SurfacePoint point = surface_point(instances, down, hit);
-                const auto light = lights.sample(point.p, random.uniform(0, 0.999999f),
-                                                 Vec2(random.uniform(0, 0.999999f), random.uniform(0, 0.999999f)));
+                const Vec2 u(random.uniform(0, 0.999999f), random.uniform(0, 0.999999f));
+                const auto light = lights.sample({point.p, point.ng}, u);
                 if (!light || light->wi.y <= 0) continue;
                 const Vec3 origin = offset_ray_origin(point.p, point.p_error, point.ng, light->wi);
                 const Ray shadow = shadow_ray(origin, *light);

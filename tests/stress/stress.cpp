@@ -6,6 +6,7 @@ namespace rayuela::stress {
 
 void Outcome::add(const Outcome& later) {
     if (failures == 0) failure = later.failure;
+    if (note.empty()) note = later.note;
     cases += later.cases;
     failures += later.failures;
     measure(later.worst);

@@ -22,6 +22,7 @@ struct Outcome {
     std::uint64_t failures = 0;
     double worst = 0;     ///< The largest figure measured; infinite where one was NaN.
     std::string failure;  ///< The first case that failed, to be found again.
+    std::string note;     ///< What else a person may want to know.
 
     /// A case has this figure: smaller is better, the test knows the limit.
     void measure(double figure) {

@@ -62,7 +62,7 @@ bool fits_floats(float scale, const Vec3& center) {
     return scale >= 8 * (std::nextafter(largest, kInfinity) - largest);
 }
 
-Outcome no_leaks_at(const std::vector<float>& scales, std::uint64_t count, std::uint64_t seed) {
+std::vector<PlacedMesh> place(const std::vector<float>& scales) {
     constexpr std::size_t kLarge = 10'000;  // triangles, whose trees are not built again for every scale
     std::vector<PlacedMesh> placed;
     for (const MeshPtr& unit : unit_meshes()) {
@@ -76,6 +76,10 @@ Outcome no_leaks_at(const std::vector<float>& scales, std::uint64_t count, std::
             }
         }
     }
+    return placed;
+}
+
+Outcome trace_from_inside(const std::vector<PlacedMesh>& placed, std::uint64_t count, std::uint64_t seed) {
     Outcome total;
     for (std::size_t i = 0; i < placed.size(); ++i)
         total.add(trace_from_inside(placed[i], count / placed.size() + 1, seed + i));
@@ -83,20 +87,21 @@ Outcome no_leaks_at(const std::vector<float>& scales, std::uint64_t count, std::
 }
 
 Outcome closed_meshes(double scale) {
-    return no_leaks_at({1e-6f, 1e-3f, 1, 37.7f, 1e6f, 1e3f}, scaled(1e8, scale), 7000);
+    return trace_from_inside(place({1e-6f, 1e-3f, 1, 37.7f, 1e6f, 1e3f}), scaled(1e8, scale), 7000);
 }
 
 Outcome closed_meshes_of_picometres(double scale) {
-    return no_leaks_at({1e-12f}, scaled(1e7, scale), 11000);
+    return trace_from_inside(place({1e-12f}), scaled(1e7, scale), 11000);
 }
 
 /// From SSE2 to what this machine has at best. Compilers and levels of optimisation: tests/stress/compilers.sh.
 Outcome instruction_sets(double scale) {
+    const std::vector<PlacedMesh> placed = place({1e-3f, 37.7f});
     const std::int64_t supported = hwy::SupportedTargets();
     Outcome total;
     for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
         hwy::GetChosenTarget().Update(rest & -rest);
-        total.add(no_leaks_at({1e-3f, 37.7f}, scaled(3e6, scale), 8000));
+        total.add(trace_from_inside(placed, scaled(3e6, scale), 8000));
     }
     hwy::GetChosenTarget().Update(supported);
     return total;

@@ -49,7 +49,7 @@ TEST(Fresnel, KnownValues) {
     EXPECT_NEAR(fresnel_dielectric(1, 1.5f), 0.04, 1e-7);
     EXPECT_NEAR(fresnel_normal(1.5f), 0.04, 1e-7);
     EXPECT_NEAR(fresnel_normal(1 / 1.5f), 0.04, 1e-7);
-    EXPECT_EQ(fresnel_dielectric(0, 1.5f), 1);
+    EXPECT_DOUBLE_EQ(fresnel_dielectric(0, 1.5f), 1);
     const float critical = std::sqrt(1 - 1 / (1.5f * 1.5f));  // of light inside glass
     EXPECT_EQ(fresnel_dielectric(critical - 1e-3f, 1 / 1.5f), 1);
     EXPECT_LT(fresnel_dielectric(critical + 1e-3f, 1 / 1.5f), 1);
