@@ -30,8 +30,7 @@ std::vector<int> checkpoints(std::vector<int> spp) {
         for (int n = 1; n < spp[0]; n *= 2) spp.push_back(n);
     }
     std::ranges::sort(spp);
-    const auto repeated = std::ranges::unique(spp);
-    spp.erase(repeated.begin(), repeated.end());
+    spp.erase(std::unique(spp.begin(), spp.end()), spp.end());
     return spp;
 }
 

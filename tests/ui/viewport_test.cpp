@@ -326,8 +326,8 @@ TEST_F(ViewportTest, APreviewIsDrawnSmallAndInItsPlace) {
     for (const bool coarse : {true, false}) {
         frame.coarse = coarse;
         ++frame.version;
-        const auto [texture, lower_right] = display.draw(std::make_shared<const Frame>(frame), request);
-        glBindTexture(GL_TEXTURE_2D, texture);
+        const Display::Picture picture = display.draw(std::make_shared<const Frame>(frame), request);
+        glBindTexture(GL_TEXTURE_2D, picture.texture);
         int width = 0, height = 0;
         glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
         glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &height);
@@ -339,7 +339,7 @@ TEST_F(ViewportTest, APreviewIsDrawnSmallAndInItsPlace) {
         std::vector<std::uint8_t> texels(static_cast<std::size_t>(4 * width * height));
         glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
         const auto shown = [&](Vec2 position) {
-            const Vec2 uv = glm::mix(Vec2(0, 1), lower_right, position / Vec2(request.size));
+            const Vec2 uv = glm::mix(Vec2(0, 1), picture.lower_right, position / Vec2(request.size));
             const glm::ivec2 at = glm::clamp(glm::ivec2(uv * Vec2(width, height)), {0, 0}, {width - 1, height - 1});
             return int{texels[static_cast<std::size_t>(4 * (at.y * width + at.x))]};
         };
