@@ -63,6 +63,28 @@ bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, cons
     return true;
 }
 
+/// All that this release of tinygltf has: newer ones have more, and take none unless all are there.
+template <typename Callbacks = tinygltf::FsCallbacks>
+Callbacks callbacks_into(Folder& folder) {
+    Callbacks callbacks{};
+    callbacks.FileExists = file_exists;
+    callbacks.ExpandFilePath = same_path;
+    callbacks.ReadWholeFile = read_whole_file;
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+        return false;
+    };
+    if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+        callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string* error, const std::string& file, void*) {
+            std::error_code code;
+            *size = fs::file_size(file, code);
+            if (code) *error += code.message();
+            return !code;
+        };
+    }
+    callbacks.user_data = &folder;
+    return callbacks;
+}
+
 /// Keeps an image encoded: only those that materials use are decoded, later. What lies in a buffer stays there.
 bool keep_image(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                 void*) {
@@ -111,7 +133,7 @@ Result<tinygltf::Model> parse(std::string_view bytes, const fs::path& path, Prob
 
     tinygltf::TinyGLTF loader;
     Folder folder{path.parent_path(), {}};
-    loader.SetFsCallbacks({file_exists, same_path, read_whole_file, nullptr, &folder});
+    loader.SetFsCallbacks(callbacks_into(folder));
     loader.SetImageLoader(keep_image, nullptr);
     tinygltf::Model model;
     std::string error, warning;
