@@ -56,7 +56,7 @@ Result<void> find_reference(const ConvergenceOptions& options, ConvergencePlan& 
     }
     return fail(plan.scene.string(), "",
                 fmt::format("there is no reference {0}_a.exr or .pfm in {1}; make one with\n"
-                            "  rayuela reference {2} -o {1}/{0}_a.exr,{1}/{0}_b.exr --spp 4096",
+                            "  rayuela reference {2} -o {1}/{0}_a.exr,{1}/{0}_b.exr",
                             stem(plan.scene), folder.string(), plan.scene.string()));
 }
 

@@ -1,4 +1,5 @@
 #include "app/bench_command.h"
+#include "app/reference_command.h"
 #include "app/subcommands.h"
 
 #include <fmt/format.h>
@@ -91,6 +92,20 @@ void add_info(CLI::App& app, InfoOptions& options) {
     command.add_flag("--json", options.json, "As JSON");
 }
 
+void add_reference(CLI::App& app, ReferenceOptions& options) {
+    CLI::App& command =
+        *app.add_subcommand("reference", "Render the two halves that `bench convergence` compares with");
+    command.add_option("scene", options.scene, "Scene to render")->required();
+    command.add_option("-o,--output", options.outputs, "Two images, A,B: .exr or .pfm")
+        ->delimiter(',')
+        ->expected(2)
+        ->required();
+    command.add_option("--spp", options.spp, "Samples a pixel of each half")->check(CLI::Range(1, 1 << 30));
+    command.add_option("--set", options.set, "Change a setting, NAME=VALUE")->allow_extra_args(false);
+    command.add_flag("--brute-force", options.brute_force, "Without acceleration structure and light sampling");
+    add_threads(command, options.threads);
+}
+
 Result<void> run(int argc, char** argv, int& usage_status) {
     CLI::App app("Rayuela: an interactive progressive path tracer. Without a command it opens the window.");
     app.set_version_flag("--version", RAYUELA_VERSION);
@@ -98,12 +113,14 @@ Result<void> run(int argc, char** argv, int& usage_status) {
     RenderOptions render;
     ScreenshotOptions screenshot;
     InfoOptions info;
+    ReferenceOptions reference;
     WindowOptions window;
     app.add_option("scene", window.scene, "Scene to open in the window");
     add_threads(app, window.threads);
     add_render(app, render);
     add_screenshot(app, screenshot);
     add_info(app, info);
+    add_reference(app, reference);
     const auto bench_kinds = add_bench(app);
     try {
         app.parse(argc, argv);
@@ -114,6 +131,7 @@ Result<void> run(int argc, char** argv, int& usage_status) {
     if (app.got_subcommand("render")) return run_render(render);
     if (app.got_subcommand("screenshot")) return run_screenshot(screenshot);
     if (app.got_subcommand("info")) return run_info(info);
+    if (app.got_subcommand("reference")) return run_reference(reference);
     if (app.got_subcommand("bench")) return run_bench(bench_kinds);
     return run_window(window);
 }

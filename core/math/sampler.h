@@ -2,13 +2,15 @@
 
 #include "core/math/vec.h"
 
+#include <array>
+#include <bit>
 #include <cstdint>
 
 namespace rayuela {
 
 enum class SamplerKind : std::uint8_t {
     independent,  ///< Hashed, without any structure: error falls as 1 / sqrt(N).
-    sobol,        ///< Owen-scrambled Sobol pairs: any 2^k consecutive samples from a multiple of 2^k are stratified.
+    sobol,        ///< Owen-scrambled Sobol: any 2^k consecutive samples from a multiple of 2^k are stratified.
 };
 
 /// Finalizer of splitmix64 (Stafford's mix 13): every input bit flips each output bit with probability 1/2.
@@ -39,15 +41,50 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t se
     return x;
 }
 
-/// Second dimension of the Sobol sequence at `index`, bits in reverse order: the product with Pascal's triangle mod 2
-/// (Ahmed, "An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact", EGSR 2024). The first
-/// dimension, likewise reversed, is the index itself.
-constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) {
-    index ^= index >> 16;
-    index ^= (index & 0xff00ff00u) >> 8;
-    index ^= (index & 0xf0f0f0f0u) >> 4;
-    index ^= (index & 0xccccccccu) >> 2;
-    return index ^ ((index & 0xaaaaaaaau) >> 1);
+/// Dimensions of the Sobol sequence that are drawn from, as pairs (2p, 2p + 1).
+inline constexpr std::uint32_t kSobolPairs = 4;
+
+/// Direction numbers of the Sobol sequence, bits in reverse order (bit 0 is 1/2): of the dimension, and of the bit of the
+/// index. Primitive polynomials and initial numbers of Joe & Kuo, "Constructing Sobol sequences with better two-dimensional
+/// projections", SIAM J. Sci. Comput. 30, 2008 (new-joe-kuo-6.21201).
+using SobolMatrix = std::array<std::array<std::uint32_t, 32>, 2 * kSobolPairs>;
+constexpr SobolMatrix make_sobol_matrix() {
+    struct Polynomial {
+        int degree;
+        std::uint32_t coefficients;  ///< The inner ones, highest first.
+        std::uint32_t initial[5];
+    };
+    constexpr Polynomial kPolynomials[] = {
+        {1, 0, {1}},          {2, 1, {1, 3}},        {3, 1, {1, 3, 1}},       {3, 2, {1, 1, 1}},
+        {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
+    SobolMatrix matrix{};
+    for (int i = 0; i < 32; ++i) matrix[0][static_cast<std::size_t>(i)] = 1u << i;
+    for (std::size_t dimension = 1; dimension < matrix.size(); ++dimension) {
+        const auto& [degree, coefficients, initial] = kPolynomials[dimension - 1];
+        std::uint32_t v[32]{};
+        for (int i = 0; i < 32; ++i) {
+            if (i < degree) {
+                v[i] = initial[i] << (31 - i);
+            } else {
+                v[i] = v[i - degree] ^ (v[i - degree] >> degree);
+                for (int k = 1; k < degree; ++k) {
+                    if (coefficients >> (degree - 1 - k) & 1) v[i] ^= v[i - k];
+                }
+            }
+            matrix[dimension][static_cast<std::size_t>(i)] = reverse_bits(v[i]);
+        }
+    }
+    return matrix;
+}
+inline constexpr SobolMatrix kSobolMatrix = make_sobol_matrix();
+
+/// A dimension of the Sobol sequence at `index`, bits in reverse order.
+constexpr std::uint32_t sobol_reversed(std::uint32_t index, std::uint32_t dimension) {
+    std::uint32_t x = 0;
+    for (; index != 0; index &= index - 1) {
+        x ^= kSobolMatrix[dimension][static_cast<std::size_t>(std::countr_zero(index))];
+    }
+    return x;
 }
 
 /// The largest multiple of 2^-24 below 1 that `bits` / 2^32 reaches; in [0, 1 - 2^-24].
@@ -57,15 +94,19 @@ constexpr float to_unit_float(std::uint32_t bits) {
 
 /// Random numbers of one sample of one pixel. They depend on nothing but (kind, seed, pixel, sample, dimension), so that
 /// any sample can be replayed alone and in any order. A dimension names one draw, of one number or of a pair, and must
-/// not be used for two: different dimensions of a sample are independent of each other. All values in [0, 1 - 2^-24].
+/// not be used for two: different dimensions of a sample are independent of each other, seen alone. All values in
+/// [0, 1 - 2^-24].
 ///
-/// sobol: each dimension is a (0, 2)-sequence over the samples of the pixel, Owen-scrambled, its index shuffled by the
-/// same scrambling so that dimensions can be padded (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020).
+/// sobol: dimensions 4k to 4k + 3 are the pairs of an eight-dimensional Sobol sequence over the samples of the pixel,
+/// Owen-scrambled; so what depends on several of them is stratified as well, the better the lower their numbers. Each
+/// such set of dimensions has its index shuffled by a scrambling of its own, so that sets can be padded (Burley, "Practical
+/// Hash-based Owen Scrambling", JCGT 9(4), 2020). The first pair of a set is a (0, 2)-sequence: every 2^m samples from a
+/// multiple of 2^m on have one in each of 2^m congruent boxes, whatever their proportions.
 class Sampler {
 public:
     Sampler() = default;
     Sampler(SamplerKind kind, std::uint32_t seed, std::uint32_t pixel_index, std::uint32_t sample_index)
-        : key_(mix_bits(mix_bits((std::uint64_t{seed} << 32) | pixel_index) + 0x9e3779b97f4a7c15u)), kind_(kind) {
+        : key_(mix_bits(mix_bits((std::uint64_t{seed} << 32) | pixel_index) + kGolden)), kind_(kind) {
         if (kind == SamplerKind::independent) {
             key_ = mix_bits(key_ + sample_index);
         } else {
@@ -74,28 +115,31 @@ public:
     }
 
     float get_1d(std::uint32_t dimension) const {
-        const std::uint64_t hash = dimension_hash(dimension);
-        const std::uint32_t low = static_cast<std::uint32_t>(hash), high = static_cast<std::uint32_t>(hash >> 32);
-        if (kind_ == SamplerKind::independent) return to_unit_float(high);
-        return to_unit_float(reverse_bits(owen_scramble_reversed(shuffled_index(low), high)));
+        const std::uint64_t hash = mix_bits(key_ + dimension * kGolden);
+        if (kind_ == SamplerKind::independent) return to_unit_float(high_bits(hash));
+        return scrambled(set_index(dimension), 2 * (dimension % kSobolPairs), high_bits(hash));
     }
 
     Vec2 get_2d(std::uint32_t dimension) const {
-        const std::uint64_t hash = dimension_hash(dimension);
-        const std::uint32_t low = static_cast<std::uint32_t>(hash), high = static_cast<std::uint32_t>(hash >> 32);
-        if (kind_ == SamplerKind::independent) return {to_unit_float(high), to_unit_float(low)};
-        const std::uint32_t index = shuffled_index(low);
-        const std::uint32_t third = static_cast<std::uint32_t>((hash * 0xd1342543de82ef95u) >> 32);
-        return {to_unit_float(reverse_bits(owen_scramble_reversed(index, high))),
-                to_unit_float(reverse_bits(owen_scramble_reversed(sobol_second_reversed(index), third)))};
+        const std::uint64_t hash = mix_bits(key_ + dimension * kGolden);
+        const auto low = static_cast<std::uint32_t>(hash);
+        if (kind_ == SamplerKind::independent) return {to_unit_float(high_bits(hash)), to_unit_float(low)};
+        const std::uint32_t index = set_index(dimension), first = 2 * (dimension % kSobolPairs);
+        return {scrambled(index, first, high_bits(hash)), scrambled(index, first + 1, low)};
     }
 
 private:
-    std::uint64_t dimension_hash(std::uint32_t dimension) const {
-        return mix_bits(key_ + std::uint64_t{dimension} * 0x9e3779b97f4a7c15u);
+    static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+
+    static std::uint32_t high_bits(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
+    static float scrambled(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
+        return to_unit_float(reverse_bits(owen_scramble_reversed(sobol_reversed(index, dimension), seed)));
     }
-    std::uint32_t shuffled_index(std::uint32_t seed) const {
-        return reverse_bits(owen_scramble_reversed(reversed_index_, seed));
+    /// The shuffled index of the set that `dimension` belongs to. What the shuffle makes of index 0 is taken off again: that
+    /// is a digital shift, which the scrambling of the result hides, and keeps indices as short as those of the samples.
+    std::uint32_t set_index(std::uint32_t dimension) const {
+        const std::uint32_t seed = high_bits(mix_bits(~key_ + dimension / kSobolPairs * kGolden));
+        return reverse_bits(owen_scramble_reversed(reversed_index_, seed) ^ owen_scramble_reversed(0, seed));
     }
 
     std::uint64_t key_ = 0;  ///< Of seed and pixel; for independent samples of the sample as well.

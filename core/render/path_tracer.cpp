@@ -10,12 +10,25 @@ namespace rayuela {
 
 namespace {
 
-/// What a dimension of the sampler decides; those of a bounce repeat every kPerBounce.
-enum Dimension : std::uint32_t { kFilter, kLens, kFirstBounce };
-enum BounceDimension : std::uint32_t { kLight, kLobe, kDirection, kRoulette, kPerBounce };
+/// What a dimension of the sampler decides, as numbers within a set of four: those of a set are stratified together, the
+/// first two best. Set 0 is the camera's and set b + 1 that of bounce b, but light samples belong to the direction that
+/// leads to them, and those of the first hit to the position in the image.
+enum CameraDimension : std::uint32_t { kFilter, kFirstLight, kLens };
+enum BounceDimension : std::uint32_t { kDirection, kNextLight, kLobe, kRoulette };
 
 std::uint32_t dimension(int bounce, BounceDimension purpose) {
-    return kFirstBounce + static_cast<std::uint32_t>(bounce) * kPerBounce + purpose;
+    return (static_cast<std::uint32_t>(bounce) + 1) * kSobolPairs + purpose;
+}
+
+std::uint32_t light_dimension(int bounce) {
+    return bounce == 0 ? std::uint32_t{kFirstLight} : dimension(bounce - 1, kNextLight);
+}
+
+/// Without light samples directions take their places.
+std::uint32_t direction_dimension(int bounce, bool light_sampling) {
+    if (light_sampling) return dimension(bounce, kDirection);
+    const auto ordinal = static_cast<std::uint32_t>(bounce) + 1;  // The position in the image is number 0.
+    return ordinal / 2 * kSobolPairs + ordinal % 2;
 }
 
 /// First bounce that Russian roulette may cut where the scene leaves it to the renderer.
@@ -166,7 +179,7 @@ float PathTracer::scattering_weight(float bsdf_pdf, float light_pdf) const {
 
 void PathTracer::sample_light(PathBatch& batch, const PathState& state, const Interaction& at, int bounce) const {
     const Sampler& sampler = batch.samplers[state.path];
-    const auto light = scene_.lights().sample(at.receiver(), sampler.get_2d(dimension(bounce, kLight)));
+    const auto light = scene_.lights().sample(at.receiver(), sampler.get_2d(light_dimension(bounce)));
     if (!light) return;
     const Vec3 wi = at.frame.to_local(light->wi);
     if (!at.consistent(light->wi, wi)) return;
@@ -183,7 +196,7 @@ void PathTracer::sample_light(PathBatch& batch, const PathState& state, const In
 bool PathTracer::scatter(PathBatch& batch, PathState& state, Ray& ray, const Interaction& at, int bounce) const {
     const Sampler& sampler = batch.samplers[state.path];
     const auto sample = at.bsdf.sample(at.wo_local, sampler.get_1d(dimension(bounce, kLobe)),
-                                       sampler.get_2d(dimension(bounce, kDirection)));
+                                       sampler.get_2d(direction_dimension(bounce, light_sampling_)));
     if (!sample) return false;
     const Vec3 wi = at.frame.to_world(sample->wi);
     if (!at.consistent(wi, sample->wi)) return false;

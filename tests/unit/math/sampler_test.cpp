@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace rayuela {
@@ -26,17 +28,52 @@ TEST(Sampler, ReversesBits) {
     }
 }
 
-TEST(Sampler, SecondSobolDimensionAgreesWithItsDirectionNumbers) {
-    // Joe & Kuo: primitive polynomial x + 1, v_1 = 1/2, v_i = v_(i-1) ^ (v_(i-1) / 2).
-    std::uint32_t v[32] = {0x80000000u};
-    for (int i = 1; i < 32; ++i) v[i] = v[i - 1] ^ (v[i - 1] >> 1);
+TEST(Sampler, SobolDimensionsFollowTheirRecurrences) {
+    // Joe & Kuo's second dimension, of the polynomial x + 1: v_1 = 1/2, v_i = v_(i-1) ^ (v_(i-1) / 2).
+    std::uint32_t second[32] = {0x80000000u};
+    for (int i = 1; i < 32; ++i) second[i] = second[i - 1] ^ (second[i - 1] >> 1);
+    // The fourth, of x^3 + x + 1 with m = 1, 3, 1: v_i = v_(i-2) ^ v_(i-3) ^ (v_(i-3) / 8).
+    std::uint32_t fourth[32] = {0x80000000u, 3u << 30, 1u << 29};
+    for (int i = 3; i < 32; ++i) fourth[i] = fourth[i - 2] ^ fourth[i - 3] ^ (fourth[i - 3] >> 3);
+    const auto combine = [](const std::uint32_t(&v)[32], std::uint32_t index) {
+        std::uint32_t x = 0;
+        for (int bit = 0; bit < 32; ++bit) {
+            if (index >> bit & 1) x ^= v[bit];
+        }
+        return x;
+    };
     for (std::uint32_t k = 0; k < 10'000; ++k) {
         const auto index = static_cast<std::uint32_t>(mix_bits(k));
-        std::uint32_t expected = 0;
-        for (int bit = 0; bit < 32; ++bit) {
-            if (index >> bit & 1) expected ^= v[bit];
+        ASSERT_EQ(sobol_reversed(index, 0), index);
+        ASSERT_EQ(reverse_bits(sobol_reversed(index, 1)), combine(second, index)) << index;
+        ASSERT_EQ(reverse_bits(sobol_reversed(index, 3)), combine(fourth, index)) << index;
+    }
+}
+
+TEST(Sampler, DimensionsOfASetAreStratifiedTogether) {
+    // The quality t of a Sobol sequence is the sum of (degree - 1) over its polynomials (Sobol 1967): every box of volume
+    // 2^(t - m) holds 2^t of the first 2^m points. Degrees 0, 1, 2, 3: t is 1 for three dimensions and 3 for four.
+    struct Case {
+        std::size_t dimensions;
+        int t;
+    };
+    for (const auto [dimensions, t] : {Case{3, 1}, Case{4, 3}}) {
+        for (const std::uint32_t set : {0u, 4u, 400u}) {
+            for (int m = t + 1; m <= 9; ++m) {
+                for (std::uint32_t shape = 0; shape < 200; ++shape) {
+                    std::array<int, 4> bits{};
+                    for (int i = 0; i < m - t; ++i) ++bits[mix_bits(shape * 100 + std::uint32_t(i) + 1) % dimensions];
+                    std::map<std::array<int, 4>, int> counts;
+                    for (std::uint32_t i = 0; i < (1u << m); ++i) {
+                        const Sampler sampler(SamplerKind::sobol, 1, shape, i);
+                        const Vec2 a = sampler.get_2d(set), b = sampler.get_2d(set + 1);
+                        ++counts[{int(std::ldexp(a.x, bits[0])), int(std::ldexp(a.y, bits[1])),
+                                  int(std::ldexp(b.x, bits[2])), int(std::ldexp(b.y, bits[3]))}];
+                    }
+                    for (const auto& [box, count] : counts) ASSERT_EQ(count, 1 << t) << m << " " << shape;
+                }
+            }
         }
-        ASSERT_EQ(reverse_bits(sobol_second_reversed(index)), expected) << index;
     }
 }
 
@@ -55,7 +92,7 @@ TEST(Sampler, OwenScramblingKeepsElementaryIntervals) {
 
 TEST(Sampler, SobolPairsFillEveryElementaryIntervalOnce) {
     for (const std::uint32_t pixel : {0u, 1u, 77'777u}) {
-        for (const std::uint32_t dimension : {0u, 1u, 60u}) {
+        for (const std::uint32_t dimension : {0u, 4u, 60u}) {
             for (int m = 1; m <= 8; ++m) {
                 for (std::uint32_t block = 0; block < 3; ++block) {
                     for (int a = 0; a <= m; ++a) {
@@ -77,12 +114,18 @@ TEST(Sampler, SobolPairsFillEveryElementaryIntervalOnce) {
 }
 
 TEST(Sampler, SobolNumbersAreStratified) {
-    for (int m = 1; m <= 10; ++m) {
-        std::set<int> cells;
-        for (std::uint32_t i = 0; i < (1u << m); ++i) {
-            cells.insert(static_cast<int>(std::ldexp(Sampler(SamplerKind::sobol, 0, 5, i).get_1d(3), m)));
+    for (std::uint32_t dimension = 0; dimension < 9; ++dimension) {
+        for (int m = 1; m <= 10; ++m) {
+            std::set<int> x, y;
+            for (std::uint32_t i = 0; i < (1u << m); ++i) {
+                const Vec2 u = Sampler(SamplerKind::sobol, 0, 5, i).get_2d(dimension);
+                x.insert(static_cast<int>(std::ldexp(u.x, m)));
+                y.insert(static_cast<int>(std::ldexp(u.y, m)));
+                EXPECT_EQ(u.x, Sampler(SamplerKind::sobol, 0, 5, i).get_1d(dimension));
+            }
+            EXPECT_EQ(x.size(), std::size_t{1} << m);
+            EXPECT_EQ(y.size(), std::size_t{1} << m);
         }
-        EXPECT_EQ(cells.size(), std::size_t{1} << m);
     }
 }
 
@@ -141,7 +184,7 @@ TEST(Sampler, IntegrationError) {
         for (std::uint32_t pixel = 0; pixel < 1000; ++pixel) {
             double mean = 0;
             for (std::uint32_t i = 0; i < n; ++i) {
-                const Vec2 u = Sampler(kind, 0, pixel, i).get_2d(6);
+                const Vec2 u = Sampler(kind, 0, pixel, i).get_2d(8);
                 mean += std::exp(double(u.x) * u.y) / n;
             }
             sum += (mean - exact) * (mean - exact) / 1000;
