@@ -67,15 +67,21 @@ inline bool intersect_triangle(const TriangleRay& ray, const Vec3& va, const Vec
 /// and to the fourth. Two triangles over one diagonal: as watertight as they are.
 inline bool intersect_quad(const TriangleRay& ray, const std::array<Vec3, 4>& corners, const TRange& range,
                            ShapeHit& hit) {
-    if (intersect_triangle(ray, corners[0], corners[1], corners[2], range, hit)) {
+    ShapeHit second;
+    const bool in_first = intersect_triangle(ray, corners[0], corners[1], corners[2], range, hit);
+    // On the diagonal (u is 0) both are hit, at t that may differ in the last bit: the closer one counts.
+    if (in_first && hit.u > 0) {
         hit.u = std::fmin(hit.u + hit.v, 1.0f);
         return true;
     }
-    if (intersect_triangle(ray, corners[0], corners[2], corners[3], range, hit)) {
+    if (intersect_triangle(ray, corners[0], corners[2], corners[3], range, second) &&
+        !(in_first && hit.t <= second.t)) {
+        hit = second;
         hit.v = std::fmin(hit.u + hit.v, 1.0f);
         return true;
     }
-    return false;
+    if (in_first) hit.u = hit.v;
+    return in_first;
 }
 
 }  // namespace rayuela
