@@ -58,7 +58,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
     CLI::App& command = *app.add_subcommand("render", "Render a scene to an image file");
     SceneOverrides& overrides = options.overrides;
     command.add_option("scene", options.scene, "Scene: .scene.json, .gltf, .glb, .obj or .ply")->required();
-    command.add_option("-o,--output", options.output, "Image: .png, .exr, .pfm or .hdr")->required();
+    command.add_option("-o,--output", options.output, "Image: .png, .exr, .pfm or .hdr");
     command.add_option("--spp", overrides.spp, "Stop at so many samples a pixel")->check(CLI::Range(1, 1 << 30));
     command.add_option("--time", overrides.seconds, "Stop after so many seconds")->check(positive_time());
     add_size(command, "Size of the image", [&overrides](glm::ivec2 size) { overrides.size = size; });
@@ -74,6 +74,15 @@ void add_render(CLI::App& app, RenderOptions& options) {
     command.add_option("--max-bounces", overrides.max_bounces, "Scattering events; 0 shows emitters only")
         ->check(CLI::Range(0, 1 << 20));
     command.add_option("--stats", options.stats, "Write figures of the render to this JSON file");
+    command
+        .add_option_function<std::array<int, 3>>(
+            "--replay",
+            [&options](const std::array<int, 3>& of) {
+                options.replay = {of[0], of[1], of[2]};
+            },
+            "Instead of rendering, print the path of one sample: pixel (from the upper left) and its number")
+        ->delimiter(',')
+        ->type_name("X,Y,SAMPLE");
 }
 
 void add_screenshot(CLI::App& app, ScreenshotOptions& options) {
@@ -124,11 +133,13 @@ Result<void> run(int argc, char** argv, int& usage_status) {
     const auto bench_kinds = add_bench(app);
     try {
         app.parse(argc, argv);
+        if (app.got_subcommand("render") && render.output.empty() && !render.replay)
+            throw CLI::RequiredError("--output");
     } catch (const CLI::ParseError& error) {
         usage_status = app.exit(error) == 0 ? 0 : kUsage;
         return {};
     }
-    if (app.got_subcommand("render")) return run_render(render);
+    if (app.got_subcommand("render")) return render.replay ? run_replay(render) : run_render(render);
     if (app.got_subcommand("screenshot")) return run_screenshot(screenshot);
     if (app.got_subcommand("info")) return run_info(info);
     if (app.got_subcommand("reference")) return run_reference(reference);

@@ -21,10 +21,16 @@ struct SceneOverrides {
     std::optional<int> max_bounces;
 };
 
+/// One sample of the film: column and row of the pixel from the upper left, and its number.
+struct ReplayedSample {
+    int x = 0, y = 0, sample = 0;
+};
+
 struct RenderOptions {
     std::filesystem::path scene, output, stats;  ///< `stats` empty: none is written.
     SceneOverrides overrides;
     int threads = 0;
+    std::optional<ReplayedSample> replay;  ///< Instead of rendering.
 };
 
 struct ScreenshotOptions {
@@ -47,6 +53,8 @@ struct WindowOptions {
 
 // Each runs one subcommand to its end; a problem is for the person who called.
 Result<void> run_render(const RenderOptions& options);
+/// Prints the path of options.replay.
+Result<void> run_replay(const RenderOptions& options);
 Result<void> run_screenshot(const ScreenshotOptions& options);
 Result<void> run_info(const InfoOptions& options);
 Result<void> run_window(const WindowOptions& options);

@@ -36,11 +36,20 @@ double max_abs(const Vec3d& v) {
     return glm::max(std::fabs(v.x), glm::max(std::fabs(v.y), std::fabs(v.z)));
 }
 
-/// Where a hit on (a, b, c), given in world space, lies.
+/// How far a point at `p` is kept from the edges of its surface: so far that rounding to float does not take it beyond a
+/// wall that meets the surface there, and lets light into a sealed room.
+double margin_at(const Vec3d& p) {
+    return 3 * double{kUnitRoundoff} * max_abs(p);
+}
+
+/// Where a hit on (a, b, c), given in world space, lies: towards the centroid by as much as the margin asks for in a triangle
+/// that is not thin.
 Surface on_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, double b1, double b2) {
     const Vec3d e1 = b - a, e2 = c - a;
+    const double extent = glm::max(max_abs(e1), max_abs(e2));
+    const double inward = glm::min(1.0, 6 * margin_at(a + b1 * e1 + b2 * e2) / extent);
     Surface surface;
-    surface.p = a + b1 * e1 + b2 * e2;
+    surface.p = a + glm::mix(b1, 1.0 / 3, inward) * e1 + glm::mix(b2, 1.0 / 3, inward) * e2;
     surface.ng = glm::cross(e1, e2);
     surface.size = max_abs(a) + max_abs(b) + max_abs(c);
     return surface;
@@ -101,7 +110,13 @@ Surface surface_of(const Box& box, const GeometryInstance& instance, const Ray& 
     const int axis = static_cast<int>(hit.primitive / 2);
     const bool max_side = hit.primitive % 2 == 1;
 
-    Vec3d p = glm::clamp((baked ? world : to_world.inverse().ray(world)).at(hit.t), lo, hi);
+    Vec3d p = (baked ? world : to_world.inverse().ray(world)).at(hit.t);
+    const double margin = margin_at(world.at(hit.t));
+    for (int k = 0; k < 3; ++k) {
+        const double scale = baked ? 1.0 : glm::length(to_world.linear[k]);
+        const double inward = glm::min(margin / scale, 0.5 * (hi[k] - lo[k]));
+        p[k] = glm::clamp(p[k], lo[k] + inward, hi[k] - inward);
+    }
     p[axis] = max_side ? hi[axis] : lo[axis];
     Vec3d n(0);
     n[axis] = max_side ? 1 : -1;

@@ -39,6 +39,17 @@ constexpr float kRouletteThroughput = 0.5f;
 /// Delta lobes are spared so many bounces longer: no light sample can take the place of the path that is cut.
 constexpr int kSparedSpecularBounces = 16;
 
+void record_arrivals(const PathBatch& batch, int bounce, PathRecord& record) {
+    for (std::size_t i = 0; i < batch.rays.size(); ++i)
+        record.vertices.push_back({bounce, batch.states[i], batch.rays[i], batch.hits[i], batch.points[i]});
+}
+
+void record_light(const PathBatch& batch, int bounce, PathRecord& record) {
+    for (std::size_t i = 0; i < batch.shadow_rays.size(); ++i)
+        record.light_samples.push_back({bounce, batch.shadow_rays[i], batch.shadow_light[i], batch.blocked[i] != 0});
+    record.radiance.push_back(batch.radiance[0]);
+}
+
 }  // namespace
 
 /// The closest hit with everything that shading asks for.
@@ -69,14 +80,16 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       rr_start_(scene.scene().render.rr_start.value_or(kDefaultRouletteStart)),
       light_sampling_(options.light_sampling && scene.features().light_sampling()) {}
 
-bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled) const {
+bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
     camera_rays(batch);
     for (int bounce = 0; !batch.rays.empty(); ++bounce) {
         if (cancelled) return false;
         intersect(batch);
         surface_interactions(batch);
+        if (record) record_arrivals(batch, bounce, *record);
         shade(batch, bounce);
         add_unblocked_light(batch);
+        if (record) record_light(batch, bounce, *record);
     }
     return true;
 }
@@ -226,11 +239,11 @@ void PathTracer::add_unblocked_light(PathBatch& batch) const {
     }
 }
 
-Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options) {
+Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options, PathRecord* record) {
     const FilmSettings& film = scene.scene().film;
     PathBatch batch;
     batch.ids = {id};
-    PathTracer(scene, film.width, film.height, options).trace(batch, std::atomic<bool>(false));
+    PathTracer(scene, film.width, film.height, options).trace(batch, std::atomic<bool>(false), record);
     return batch.radiance[0];
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/render/camera_rays.h"
 #include "core/render/path_batch.h"
+#include "core/render/path_record.h"
 #include "core/render/render_scene.h"
 
 #include <atomic>
@@ -23,8 +24,8 @@ public:
     PathTracer(const RenderScene& scene, int width, int height, const PathTracerOptions& options = {});
 
     /// Traces the paths named by batch.ids; fills batch.radiance and batch.first_object. False, and no result, when
-    /// `cancelled` became true on the way.
-    bool trace(PathBatch& batch, const std::atomic<bool>& cancelled) const;
+    /// `cancelled` became true on the way. `record`, where given, is told what a batch of one path does.
+    bool trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record = nullptr) const;
 
     /// ObjectId::value of the object that a Hit::object belongs to; 0 for kNone.
     std::uint32_t object_id(std::uint32_t hit_object) const {
@@ -55,6 +56,7 @@ private:
 };
 
 /// Replays one sample of the scene's film: the same stages on a batch of one, the same radiance to the last bit.
-Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options = {});
+Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options = {},
+                PathRecord* record = nullptr);
 
 }  // namespace rayuela

@@ -76,7 +76,7 @@ Outcome chi_square(double scale) {
         double integral = 0;
         for (std::size_t cell = 0; cell < histogram.size(); ++cell)
             integral += expected[cell] = histogram.integrate(
-                cell, [&](const Vec3& wi) { return double(bsdf.pdf(wo, wi)); }, 2e-6);
+                cell, [&](const Vec3& wi) { return double(bsdf.pdf(wo, wi)); }, 1e-7);
         const std::vector<Vec3> drawn = draw(bsdf, wo, samples, random);
         outcome.cases += samples - 1;
         for (const Vec3& wi : drawn) {
