@@ -28,14 +28,14 @@ std::string weight_of(float bsdf_pdf, float light_pdf) {
 
 void print_arrival(const RenderScene& scene, const PathRecord::Vertex& v) {
     fmt::print("bounce {}: throughput {}, pdf {:.6g}\n", v.bounce, text(v.state.throughput), v.state.bsdf_pdf);
-    fmt::print("  ray         {} along {}\n", text(v.ray.origin), text(v.ray.direction));
+    fmt::print("  ray         {} along {}\n", text(v.ray.origin + scene.origin()), text(v.ray.direction));
     if (!v.hit.valid()) {
         fmt::print("  environment {}, {}\n", text(scene.environment().radiance(v.ray.direction)),
                    weight_of(v.state.bsdf_pdf, scene.lights().environment_pdf(v.ray.direction)));
         return;
     }
     fmt::print("  hit         {} at t {:.9g}\n", name_of(scene, v.hit), v.hit.t);
-    fmt::print("  point       {} +- {}\n", text(v.point.p), text(v.point.p_error));
+    fmt::print("  point       {} +- {}\n", text(v.point.p + scene.origin()), text(v.point.p_error));
     fmt::print("  normal      {} shading {}, uv ({:.6g} {:.6g})\n", text(v.point.ng), text(v.point.ns), v.point.uv.x,
                v.point.uv.y);
     const bool front = glm::dot(v.ray.direction, v.point.ng) < 0;

@@ -76,7 +76,7 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       width_(width),
       height_(height),
       options_(options),
-      camera_(scene.scene().camera, static_cast<double>(scene.scene().film.width) / scene.scene().film.height),
+      camera_(scene.camera(), static_cast<double>(scene.scene().film.width) / scene.scene().film.height),
       rr_start_(scene.scene().render.rr_start.value_or(kDefaultRouletteStart)),
       light_sampling_(options.light_sampling && scene.features().light_sampling()) {}
 

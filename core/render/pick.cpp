@@ -5,17 +5,17 @@
 namespace rayuela {
 
 std::optional<Pick> pick(const RenderScene& scene, const Vec2& position) {
-    const Scene& description = scene.scene();
-    const CameraRays camera(description.camera, static_cast<double>(description.film.width) / description.film.height);
+    const FilmSettings& film = scene.scene().film;
+    const CameraRays camera(scene.camera(), static_cast<double>(film.width) / film.height);
     const Ray ray = camera.ray(position, Vec2(0));
     Hit hit;
     scene.accelerator().intersect({&ray, 1}, {&hit, 1});
     if (!hit.valid()) return std::nullopt;
     const SurfacePoint surface = surface_point(scene.accelerator().instances(), ray, hit);
     return Pick{.object = scene.object_id(hit.object),
-                .point = surface.p,
+                .point = surface.p + scene.origin(),
                 .normal = surface.ns,
-                .distance = glm::dot(surface.p - description.camera.position, camera.forward())};
+                .distance = glm::dot(surface.p - ray.origin, camera.forward())};
 }
 
 }  // namespace rayuela

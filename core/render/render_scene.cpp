@@ -1,5 +1,7 @@
 #include "core/render/render_scene.h"
 
+#include "core/accel/traced_object.h"
+
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
@@ -67,7 +69,33 @@ std::uint64_t bytes(const Image& image) {
     return image.pixels.size() * sizeof(Vec4);
 }
 
+/// The middle of the objects where they are many times their extent away from 0 and can be moved there without rounding.
+Vec3 origin_near(std::span<const GeometryInstance> instances) {
+    constexpr float kFar = 16;
+    Bounds3 bounds;
+    for (const GeometryInstance& instance : instances) {
+        const TracedObject object(instance);
+        const TriangleMesh* mesh = object.mesh();
+        bounds.extend(world_bounds(object, instance, mesh ? mesh->bounds : Bounds3()));
+    }
+    const Vec3 middle = bounds.center();
+    if (bounds.empty() || !is_finite(middle)) return Vec3(0);
+    if (!(max_component(glm::abs(middle)) > kFar * max_component(bounds.extent()))) return Vec3(0);
+    const auto moves_exactly = [&](const GeometryInstance& instance) {
+        const Vec3& t = instance.to_world.translation;
+        return Vec3d(t - middle) == Vec3d(t) - Vec3d(middle);
+    };
+    return std::ranges::all_of(instances, moves_exactly) ? middle : Vec3(0);
+}
+
 }  // namespace
+
+Camera RenderScene::camera() const {
+    Camera camera = scene_->camera;
+    camera.position -= origin_;
+    camera.target -= origin_;
+    return camera;
+}
 
 void RenderScene::flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const {
     struct Placement {
@@ -120,6 +148,8 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
         std::vector<GeometryInstance> instances;
         FlatObjects flat;
         next->flatten(instances, flat);
+        if (!previous || changes.geometry) next->origin_ = origin_near(instances);
+        for (GeometryInstance& instance : instances) instance.to_world.translation -= next->origin_;
         next->objects_ = std::make_shared<const FlatObjects>(std::move(flat));
         if (trees) {
             next->accelerator_ = Accelerator::build(std::move(instances), next->scene_->render.accel,

@@ -33,6 +33,11 @@ public:
                                                      const SceneChanges& changes, BuildControl& control);
 
     const Scene& scene() const { return *scene_; }
+    /// Rays are traced in a space with the axes of the scene whose origin is here: next to the objects where those are far
+    /// from the scene's own, so that no digits are lost on the way to them. All that follows is in that space.
+    const Vec3& origin() const { return origin_; }
+    /// The scene's camera, there.
+    Camera camera() const;
     const std::shared_ptr<const Scene>& shared_scene() const { return scene_; }
     const Features& features() const { return features_; }
     const Accelerator& accelerator() const { return *accelerator_; }
@@ -59,6 +64,7 @@ private:
     Features find_features() const;
 
     std::shared_ptr<const Scene> scene_;
+    Vec3 origin_{0};
     std::shared_ptr<const FlatObjects> objects_;
     std::shared_ptr<const PackedMaterials> materials_;  ///< The default material, then the scene's.
     std::shared_ptr<const Accelerator> accelerator_;
