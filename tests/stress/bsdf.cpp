@@ -60,7 +60,7 @@ std::vector<Vec3> draw(const Bsdf& bsdf, const Vec3& wo, std::uint64_t count, Ra
 /// Figure: the level of all tests together, 0.01, shared by Sidak, over the smallest p-value.
 Outcome chi_square(double scale) {
     constexpr std::uint64_t kPilot = 8192;
-    const std::uint64_t samples = scaled(1e6, scale, 16'384);
+    const std::uint64_t samples = scaled(4e5, scale, 16'384);
     const std::vector<MaterialCase> materials = material_cases();
     const std::vector<Pair> pairs =
         choose_pairs(materials, scaled(double(materials.size() * kAngles.size()), std::sqrt(scale), 40));
