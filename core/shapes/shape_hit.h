@@ -2,6 +2,8 @@
 
 #include "core/math/ray.h"
 
+#include <cmath>
+
 namespace rayuela {
 
 /// What the intersection of a ray with one shape gives. t is rounded to float once, before it is compared with anything:
@@ -17,7 +19,7 @@ struct TRange {
     float min = 0;
     float max = kInfinity;
 
-    bool contains(float t) const { return t >= min && t <= max && t < kInfinity; }
+    bool contains(float t) const { return t >= min && t <= max && std::fabs(t) < kInfinity; }
 };
 
 }  // namespace rayuela

@@ -86,14 +86,15 @@ Outcome random_words(double scale) {
                        });
 }
 
-/// 2^k consecutive samples of a pair from a multiple of 2^k: one in each elementary interval of that area.
+/// 2^k consecutive samples from a multiple of 2^k: one in each stratum of either number, and of the first pair of a set one in
+/// each elementary interval of that area.
 Outcome strata(double scale) {
     return for_cases(scaled(1e6, scale, 100), 41, [](Random& random, Outcome& outcome) {
         const int k = random.integer(0, 9);
         const std::uint32_t count = 1u << k, seed = random.bits(), pixel = random.bits(),
                             dimension = random.bits() % 256;
         const std::uint32_t first = (random.bits() % 64) * count;
-        const int columns = random.integer(0, k);
+        const int columns = dimension % kSobolPairs == 0 ? random.integer(0, k) : random.integer(0, 1) * k;
         std::vector<std::uint8_t> filled(count);
         for (std::uint32_t i = 0; i < count; ++i) {
             const Vec2 u = Sampler(SamplerKind::sobol, seed, pixel, first + i).get_2d(dimension);
