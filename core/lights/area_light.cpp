@@ -104,9 +104,30 @@ std::optional<LightSample> AreaLight::finish(const Vec3& p, const Vec3& point, c
     s.pdf = solid_angle_pdf > 0 ? solid_angle_pdf : area_pdf(p, point, s.wi, n, area());
     if (!(s.pdf > 0 && s.pdf < kInfinity)) return std::nullopt;
     // Rounding of the point itself, of the shadow ray's direction and of its intersection with the surface.
-    const Vec3 magnitude =
-        glm::abs(p) + glm::abs(origin) + (kind == Kind::sphere ? Vec3(size) : glm::abs(edge_u) + glm::abs(edge_v));
-    s.target = offset_ray_origin(point, gamma(6) * magnitude, n, -s.wi);
+    const Vec3 error = gamma(6) * glm::abs(p) + point_error();
+    s.target = offset_ray_origin(point, error, n, -s.wi);
+    return s;
+}
+
+Vec3 AreaLight::point_error() const {
+    return gamma(6) * (glm::abs(origin) + (kind == Kind::sphere ? Vec3(size) : glm::abs(edge_u) + glm::abs(edge_v)));
+}
+
+AreaLight::SurfaceSample AreaLight::sample_surface(const Vec2& u, float u_side) const {
+    SurfaceSample s;
+    if (kind == Kind::sphere) {
+        s.normal = sample_uniform_sphere(u);
+        s.point = origin + size * s.normal;
+        s.radiance = radiance_at(s.normal);
+    } else {
+        const Vec2 position = kind == Kind::triangle ? sample_uniform_triangle(u) : u;
+        s.normal = normal;
+        s.point = origin + position.x * edge_u + position.y * edge_v;
+        s.radiance = radiance_at(position);
+    }
+    s.error = point_error();
+    s.pdf = (two_sided ? 0.5f : 1.0f) / area();
+    if (two_sided && u_side < 0.5f) s.normal = -s.normal;
     return s;
 }
 

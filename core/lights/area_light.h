@@ -44,7 +44,20 @@ struct AreaLight {
     /// normal `ng`.
     float pdf(const Vec3& p, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const;
 
+    /// A point drawn evenly over the area, seen from a side that shines.
+    struct SurfaceSample {
+        Vec3 point{0};
+        Vec3 error{0};   ///< Bound on the distance to the true surface.
+        Vec3 normal{0};  ///< Unit, on that side.
+        Color radiance{0};
+        float pdf = 0;  ///< Per area, the choice of the side included.
+    };
+    /// `u_side` chooses the side of a two-sided light.
+    SurfaceSample sample_surface(const Vec2& u, float u_side) const;
+
 private:
+    /// Rounding of a point of the light.
+    Vec3 point_error() const;
     std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;
     std::optional<LightSample> sample_flat(const Vec3& p, const Vec2& u) const;
     /// `solid_angle_pdf` 0: the point was drawn by area.

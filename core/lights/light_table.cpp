@@ -54,8 +54,8 @@ std::optional<LightSample> LightTable::sample_area_light(const LightReceiver& re
 
 float LightTable::pdf(const LightReceiver& receiver, const Vec3& wi, const Hit& hit, const Vec3& hit_point,
                       const Vec3& ng) const {
-    if (hit.object >= first_light_.size() || first_light_[hit.object] == kNone) return 0;
-    const std::uint32_t light = first_light_[hit.object] + hit.primitive;
+    const std::uint32_t light = light_of(hit);
+    if (light == kNone) return 0;
     const float selection = tree_.probability(receiver, light);
     if (selection == 0) return 0;
     return (1 - environment_probability_) * selection * lights_[light].pdf(receiver.p, wi, hit_point, ng);

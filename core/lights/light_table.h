@@ -40,6 +40,14 @@ public:
     /// The same for a direction that hits nothing.
     float environment_pdf(const Vec3& wi) const;
 
+    /// The lights but for the environment.
+    std::span<const AreaLight> lights() const { return lights_; }
+    /// Which of `lights` the surface `hit` is, or kNone.
+    std::uint32_t light_of(const Hit& hit) const {
+        if (hit.object >= first_light_.size() || first_light_[hit.object] == kNone) return kNone;
+        return first_light_[hit.object] + hit.primitive;
+    }
+
     /// Lights that can be drawn, an environment image among them.
     std::size_t size() const { return lights_.size() + (environment_ ? 1 : 0); }
     std::uint64_t memory_bytes() const;

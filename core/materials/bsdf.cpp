@@ -69,6 +69,10 @@ bool is_specular_only(const Material& material) {
     return std::visit([](const auto& m) { return m.is_specular_only(); }, material);
 }
 
+bool has_delta_lobe(const Material& material) {
+    return std::visit([](const auto& m) { return m.has_delta_lobe(); }, material);
+}
+
 bool transmits(const Material& material) {
     return std::visit([](const auto& m) { return m.transmits(); }, material);
 }

@@ -57,6 +57,8 @@ bool emits_two_sided(const Material& material);
 bool emits_evenly(const Material& material);
 /// Whether no point of it has a smooth lobe: light samples are wasted on it.
 bool is_specular_only(const Material& material);
+/// Whether every point of it has a delta lobe: a mirror, clear glass, a clear coat.
+bool has_delta_lobe(const Material& material);
 /// Whether light can pass through it.
 bool transmits(const Material& material);
 

@@ -61,6 +61,7 @@ struct Dielectric {
     DielectricBsdf bsdf(const Vec2& uv) const;
     bool is_specular_only() const { return is_smooth_everywhere(roughness); }
     bool transmits() const { return true; }
+    bool has_delta_lobe() const { return is_smooth_everywhere(roughness); }
     bool operator==(const Dielectric&) const = default;
 };
 

@@ -37,6 +37,7 @@ struct Diffuse {
     DiffuseBsdf bsdf(const Vec2& uv) const;
     bool is_specular_only() const { return false; }
     bool transmits() const { return false; }
+    bool has_delta_lobe() const { return false; }
     bool operator==(const Diffuse&) const = default;
 };
 

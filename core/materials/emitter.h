@@ -38,6 +38,7 @@ struct Emitter {
     BlackBsdf bsdf(const Vec2&) const { return {}; }
     bool is_specular_only() const { return true; }
     bool transmits() const { return false; }
+    bool has_delta_lobe() const { return false; }
     Emission emission() const { return {radiance, 1, two_sided}; }
     bool operator==(const Emitter&) const = default;
 };

@@ -52,6 +52,7 @@ struct Metal {
     MetalBsdf bsdf(const Vec2& uv) const;
     bool is_specular_only() const { return is_smooth_everywhere(roughness); }
     bool transmits() const { return false; }
+    bool has_delta_lobe() const { return is_smooth_everywhere(roughness); }
     bool operator==(const Metal&) const = default;
 };
 

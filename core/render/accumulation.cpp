@@ -1,5 +1,7 @@
 #include "core/render/accumulation.h"
 
+#include "core/accel/parallel.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
@@ -14,6 +16,8 @@ namespace {
 constexpr int kTileSide = 32;
 /// Paths in flight that the intersection kernels want; smaller tiles carry several samples at once.
 constexpr std::size_t kBatchPaths = 1024;
+/// Paths from lamps that are traced together.
+constexpr std::uint32_t kLightPaths = 4096;
 
 }  // namespace
 
@@ -37,6 +41,7 @@ int Accumulation::samples() const {
 void Accumulation::restart() {
     for (Tile& tile : tiles_) tile.samples = 0;
     film_.clear_rejected();
+    film_.clear_splats();
 }
 
 void Accumulation::clear_unstarted() {
@@ -58,6 +63,11 @@ void Accumulation::clear(const Tile& tile) {
 
 RayCounts Accumulation::add_samples(const PathTracer& tracer, int samples, PassControl& control) {
     for (PathBatch& batch : batches_) batch.counts = {};
+    for (LightBatch& batch : light_batches_) batch.counts = {};
+    if (const LightTracer* light_tracer = tracer.light_tracer()) {
+        while (film_.rounds() < static_cast<std::uint32_t>(samples) && add_round(*light_tracer, control)) {
+        }
+    }
     const tbb::blocked_range<std::size_t> all(0, tiles_.size(), 1);
     const auto add_to_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
         PathBatch& batch = batches_.local();
@@ -67,7 +77,33 @@ RayCounts Accumulation::add_samples(const PathTracer& tracer, int samples, PassC
     tbb::parallel_for(all, add_to_tiles, tbb::simple_partitioner());
     RayCounts counts;
     for (const PathBatch& batch : batches_) counts += batch.counts;
+    for (const LightBatch& batch : light_batches_) counts += batch.counts;
     return counts;
+}
+
+/// All light paths that go with one sample of every pixel, or none where `control` does not allow.
+bool Accumulation::add_round(const LightTracer& tracer, PassControl& control) {
+    if (control.cancelled || std::chrono::steady_clock::now() >= control.stop_at) return false;
+    const std::uint32_t round = film_.rounds();
+    const std::size_t count = (tracer.paths() + kLightPaths - 1) / kLightPaths;
+    std::vector<std::vector<Splat>> splats(count);
+    parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+        LightBatch& batch = light_batches_.local();
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t first = static_cast<std::uint32_t>(i) * kLightPaths;
+            if (!tracer.trace(first, std::min(kLightPaths, tracer.paths() - first), round, batch, control.cancelled)) {
+                return;
+            }
+            splats[i].swap(batch.splats);
+        }
+    });
+    if (control.cancelled) return false;
+    // One thread in the order of the paths: sums do not depend on how many there are.
+    for (const std::vector<Splat>& batch : splats) {
+        for (const Splat& splat : batch) film_.splat(splat.pixel, round, splat.radiance);
+    }
+    film_.end_round(round);
+    return true;
 }
 
 void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples, PassControl& control,

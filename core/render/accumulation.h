@@ -47,6 +47,7 @@ private:
     };
     using Batches = tbb::enumerable_thread_specific<PathBatch>;
 
+    bool add_round(const LightTracer& tracer, PassControl& control);
     void add_to_tile(Tile& tile, const PathTracer& tracer, int samples, PassControl& control, PathBatch& batch);
     void clear(const Tile& tile);
 
@@ -54,6 +55,7 @@ private:
     std::vector<std::uint32_t> object_ids_;
     std::vector<Tile> tiles_;
     Batches batches_;
+    tbb::enumerable_thread_specific<LightBatch> light_batches_;
 };
 
 }  // namespace rayuela

@@ -28,6 +28,13 @@ Axes view_axes(const Camera& camera) {
     return {forward, right, glm::cross(right, forward)};
 }
 
+constexpr float kSigma = 0.5f, kGaussianRadius = 1.5f;
+
+/// Of the Gaussian, within its radius.
+float gaussian_mass() {
+    return 1 - std::exp(-kGaussianRadius * kGaussianRadius / (2 * kSigma * kSigma));
+}
+
 float tent(float u) {
     return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
 }
@@ -56,6 +63,24 @@ Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
             .direction = Vec3(glm::normalize(focus_distance_ * direction - offset))};
 }
 
+std::optional<CameraRays::View> CameraRays::view(const Vec3& p, const Vec2& lens) const {
+    const Vec3d offset = lens_radius_ * (double{lens.x} * right_ + double{lens.y} * up_);
+    const Vec3d to_p = Vec3d(p) - Vec3d(origin_) - offset;
+    const double depth = glm::dot(to_p, Vec3d(forward_));
+    if (!(depth > 0)) return std::nullopt;
+    // Where the ray meets the plane that is sharp, as seen from the lens centre at distance 1.
+    const Vec3d direction = to_p / depth + (lens_radius_ > 0 ? offset / focus_distance_ : Vec3d(0));
+    const Vec3d from_corner = direction - corner_;
+    return View{Vec3(Vec3d(origin_) + offset), Vec2(glm::dot(from_corner, across_) / glm::dot(across_, across_),
+                                                    glm::dot(from_corner, down_) / glm::dot(down_, down_))};
+}
+
+float CameraRays::density(const Vec3& direction) const {
+    const double cosine = glm::dot(Vec3d(direction), Vec3d(forward_));
+    const double area = std::sqrt(glm::dot(across_, across_) * glm::dot(down_, down_));
+    return static_cast<float>(1 / (cosine * cosine * cosine * area));
+}
+
 Vec2 sample_filter(PixelFilter filter, const Vec2& u) {
     switch (filter) {
         case PixelFilter::box:
@@ -65,12 +90,36 @@ Vec2 sample_filter(PixelFilter filter, const Vec2& u) {
         case PixelFilter::gaussian:
             break;
     }
-    // Box & Muller in polar form, the radius by inversion of its distribution cut at kRadius.
-    constexpr float kSigma = 0.5f, kRadius = 1.5f;
-    const float mass = 1 - std::exp(-kRadius * kRadius / (2 * kSigma * kSigma));
-    const float radius = kSigma * std::sqrt(-2 * std::log(1 - u.x * mass));
+    // Box & Muller in polar form, the radius by inversion of its distribution cut at kGaussianRadius.
+    const float radius = kSigma * std::sqrt(-2 * std::log(1 - u.x * gaussian_mass()));
     const float angle = 2 * kPi * u.y;
     return radius * Vec2(std::cos(angle), std::sin(angle));
+}
+
+float filter_radius(PixelFilter filter) {
+    switch (filter) {
+        case PixelFilter::box:
+            return 0.5f;
+        case PixelFilter::tent:
+            return 1;
+        case PixelFilter::gaussian:
+            break;
+    }
+    return kGaussianRadius;
+}
+
+float filter_density(PixelFilter filter, const Vec2& offset) {
+    switch (filter) {
+        case PixelFilter::box:
+            return offset.x >= -0.5f && offset.x < 0.5f && offset.y >= -0.5f && offset.y < 0.5f ? 1.0f : 0.0f;
+        case PixelFilter::tent:
+            return std::max(0.0f, 1 - std::abs(offset.x)) * std::max(0.0f, 1 - std::abs(offset.y));
+        case PixelFilter::gaussian:
+            break;
+    }
+    const float r2 = glm::dot(offset, offset);
+    if (!(r2 < kGaussianRadius * kGaussianRadius)) return 0;
+    return std::exp(-r2 / (2 * kSigma * kSigma)) / (2 * kPi * kSigma * kSigma * gaussian_mass());
 }
 
 }  // namespace rayuela

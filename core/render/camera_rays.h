@@ -3,6 +3,8 @@
 #include "core/math/ray.h"
 #include "core/scene/scene.h"
 
+#include <optional>
+
 namespace rayuela {
 
 /// A Camera made ready: maps positions of the image and of the lens to rays.
@@ -15,6 +17,15 @@ public:
     /// Through `position` of the image, (0, 0) its upper left and (1, 1) its lower right corner, from the point `lens` of
     /// the unit disc. The direction is unit.
     Ray ray(const Vec2& position, const Vec2& lens) const;
+    /// A point as the camera sees it.
+    struct View {
+        Vec3 origin{0};    ///< Of the ray, on the lens.
+        Vec2 position{0};  ///< Of the image; may lie outside.
+    };
+    /// The ray from the point `lens` of the unit disc that meets `p`; nothing behind the camera.
+    std::optional<View> view(const Vec3& p, const Vec2& lens) const;
+    /// Of positions evenly spread over the image, the density per solid angle of rays in this unit direction.
+    float density(const Vec3& direction) const;
     /// Unit view axis.
     const Vec3& forward() const { return forward_; }
 
@@ -30,5 +41,8 @@ private:
 /// weigh the same (Ernst, Stamminger & Greiner, "Filter Importance Sampling", 2006).
 /// box: 1 pixel wide. tent: 2 pixels wide. gaussian: standard deviation 1/2, cut at a radius of 3/2.
 Vec2 sample_filter(PixelFilter filter, const Vec2& u);
+/// Density with which `sample_filter` draws the offset, and the largest component of an offset.
+float filter_density(PixelFilter filter, const Vec2& offset);
+float filter_radius(PixelFilter filter);
 
 }  // namespace rayuela

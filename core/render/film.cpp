@@ -30,10 +30,7 @@ Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
 void Film::add(std::size_t pixel, std::uint32_t sample, const Color& radiance) {
-    if (const auto cause = rejection(radiance)) {
-        rejected_[static_cast<std::size_t>(*cause)].fetch_add(1, std::memory_order_relaxed);
-        return;
-    }
+    if (count_rejection(radiance)) return;
     Pixel& p = pixels_[pixel];
     const Vec3d value(radiance);
     const double y = luminance(value);
@@ -43,6 +40,30 @@ void Film::add(std::size_t pixel, std::uint32_t sample, const Color& radiance) {
     ++p.count[half];
 }
 
+void Film::splat(std::size_t pixel, std::uint32_t round, const Color& radiance) {
+    if (count_rejection(radiance)) return;
+    if (splats_.empty()) splats_.resize(pixels_.size());
+    const Vec3d value(radiance);
+    const double y = luminance(value);
+    splats_[pixel].sum[sample_half(round)] += value;
+    splats_[pixel].luminance_squared += y * y;
+}
+
+void Film::end_round(std::uint32_t round) {
+    ++rounds_[sample_half(round)];
+}
+
+void Film::clear_splats() {
+    splats_.clear();
+    rounds_ = {};
+}
+
+bool Film::count_rejection(const Color& radiance) {
+    const auto cause = rejection(radiance);
+    if (cause) rejected_[static_cast<std::size_t>(*cause)].fetch_add(1, std::memory_order_relaxed);
+    return cause.has_value();
+}
+
 void Film::clear_rejected() {
     for (auto& count : rejected_) count = 0;
 }
@@ -50,14 +71,27 @@ void Film::clear_rejected() {
 Vec3d Film::mean(std::size_t pixel) const {
     const Pixel& p = pixels_[pixel];
     const std::uint64_t n = count(pixel);
-    return n ? (p.sum[0] + p.sum[1]) / static_cast<double>(n) : Vec3d(0);
+    const Vec3d of_samples = n ? (p.sum[0] + p.sum[1]) / static_cast<double>(n) : Vec3d(0);
+    if (splats_.empty()) return of_samples;
+    return of_samples + (splats_[pixel].sum[0] + splats_[pixel].sum[1]) / static_cast<double>(rounds());
+}
+
+Vec3d Film::half_mean(std::size_t pixel, std::size_t half) const {
+    const Vec3d of_samples = pixels_[pixel].sum[half] / static_cast<double>(pixels_[pixel].count[half]);
+    if (splats_.empty()) return of_samples;
+    return of_samples + splats_[pixel].sum[half] / static_cast<double>(rounds_[half]);
 }
 
 double Film::variance_of_mean(std::size_t pixel) const {
     const auto n = static_cast<double>(count(pixel));
     if (n < 2) return 0;
-    const double y = luminance(mean(pixel));
-    return std::max(0.0, pixels_[pixel].luminance_squared / n - y * y) / (n - 1);
+    const Pixel& p = pixels_[pixel];
+    const double y = luminance((p.sum[0] + p.sum[1]) / n);
+    const double of_samples = std::max(0.0, p.luminance_squared / n - y * y) / (n - 1);
+    if (splats_.empty()) return of_samples;
+    // Splats are rare among the many paths of a round: their squares alone are nearly the variance.
+    const double rounds_done = rounds();
+    return of_samples + splats_[pixel].luminance_squared / (rounds_done * rounds_done);
 }
 
 Image Film::image() const {
@@ -77,11 +111,11 @@ double Film::relative_error() const {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const Pixel& p = pixels_[i];
             const auto na = static_cast<double>(p.count[0]), nb = static_cast<double>(p.count[1]);
-            if (na == 0 || nb == 0) {
+            if (na == 0 || nb == 0 || (!splats_.empty() && (rounds_[0] == 0 || rounds_[1] == 0))) {
                 sum.complete = false;
                 continue;
             }
-            const Vec3d difference = p.sum[0] / na - p.sum[1] / nb;
+            const Vec3d difference = half_mean(i, 0) - half_mean(i, 1);
             const Vec3d square = difference * difference * (na * nb / ((na + nb) * (na + nb)));
             const Vec3d m = mean(i);
             const Vec3d error = square / (m * m + kDarkRegularizer);

@@ -11,7 +11,7 @@
 
 namespace rayuela {
 
-/// Sums of the samples of each pixel in double precision, in two halves (see sample_half). Different pixels may be
+/// Sums of the samples of each pixel, and of what light paths bring to it, in double precision, in two halves (see sample_half). Different pixels may be
 /// added to from different threads; the sums of a pixel depend only on the order of its own samples.
 class Film {
 public:
@@ -22,6 +22,15 @@ public:
 
     /// Adds sample number `sample` of the pixel, or counts why it is left out.
     void add(std::size_t pixel, std::uint32_t sample, const Color& radiance);
+    /// Adds to the pixel a share of what light paths of the round bring, or counts why it is left out. Not to be called from
+    /// several threads. What a pixel shows is the mean of its samples plus the mean of the rounds.
+    void splat(std::size_t pixel, std::uint32_t round, const Color& radiance);
+    /// Counts the round, whose splats have all been added. Rounds are numbered from 0 and come in order.
+    void end_round(std::uint32_t round);
+    std::uint32_t rounds() const { return rounds_[0] + rounds_[1]; }
+    /// Forgets all rounds.
+    void clear_splats();
+
     /// Forgets the pixel's samples.
     void clear(std::size_t pixel) { pixels_[pixel] = {}; }
     void clear_rejected();
@@ -44,7 +53,7 @@ public:
     double relative_error() const;
 
     std::array<std::uint64_t, kRejectionCount> rejected() const;
-    std::uint64_t memory_bytes() const { return pixels_.size() * sizeof(Pixel); }
+    std::uint64_t memory_bytes() const { return pixels_.size() * sizeof(Pixel) + splats_.size() * sizeof(Splats); }
 
 private:
     struct alignas(64) Pixel {
@@ -52,8 +61,18 @@ private:
         double luminance_squared = 0;
         std::array<std::uint32_t, 2> count{};
     };
+    struct Splats {
+        std::array<Vec3d, 2> sum{Vec3d(0), Vec3d(0)};
+        double luminance_squared = 0;
+    };
+    bool count_rejection(const Color& radiance);
+    /// Mean of one half; NaN while it is empty.
+    Vec3d half_mean(std::size_t pixel, std::size_t half) const;
+
     int width_, height_;
     std::vector<Pixel> pixels_;
+    std::vector<Splats> splats_;  ///< Empty before the first round.
+    std::array<std::uint32_t, 2> rounds_{};
     std::array<std::atomic<std::uint64_t>, kRejectionCount> rejected_{};
 };
 

@@ -18,8 +18,10 @@ struct PathId {
 /// What a path carries from one bounce to the next.
 struct PathState {
     Color throughput{1};
-    std::uint32_t path = 0;  ///< Which of the batch.
-    LightReceiver receiver;  ///< At the last scattering, not offset.
+    std::uint32_t path = 0;     ///< Which of the batch.
+    std::uint32_t sampler = 0;  ///< Which of the batch; the path's own unless it has been split.
+    LightReceiver receiver;     ///< At the last scattering, not offset.
+    float light_ratio = 0;      ///< See LightTracer; 0 where no path from a lamp could be the same.
     float bsdf_pdf = 0;  ///< Density with which the last scattering chose the direction; 0 for camera and delta lobes.
 };
 
@@ -39,13 +41,14 @@ struct RayCounts {
 struct PathBatch {
     // One a path.
     std::vector<PathId> ids;
-    std::vector<Sampler> samplers;
     std::vector<Color> radiance;              ///< The result.
     std::vector<std::uint32_t> first_object;  ///< Hit::object of the camera ray.
 
+    std::vector<Sampler> samplers;  ///< One a path, then those of the parts of split paths.
+
     // One a path still on its way, in the order of the paths.
-    std::vector<PathState> states;
-    std::vector<Ray> rays;
+    std::vector<PathState> states, next_states;
+    std::vector<Ray> rays, next_rays;
     std::vector<Hit> hits;
     std::vector<SurfacePoint> points;
 

@@ -1,19 +1,25 @@
 #pragma once
 
 #include "core/render/camera_rays.h"
+#include "core/render/light_tracer.h"
 #include "core/render/path_batch.h"
 #include "core/render/path_record.h"
 #include "core/render/render_scene.h"
 
 #include <atomic>
+#include <optional>
 
 namespace rayuela {
+
+class AimedBsdf;
+class Interaction;
 
 /// Parts of the algorithm that can be left out; the expected image is the same. For tests and benchmarks.
 struct PathTracerOptions {
     bool light_sampling = true;  ///< Else light is found by scattered rays alone.
     bool mis = true;             ///< Else light that can be sampled counts by its samples alone, after smooth lobes.
     bool russian_roulette = true;
+    bool light_tracing = true;  ///< Else caustics are found by camera paths alone, and by chance. Needs light_sampling.
 };
 
 /// Unidirectional path tracing with light sampling (Kajiya 1986; combined by multiple importance sampling, Veach & Guibas
@@ -22,10 +28,15 @@ class PathTracer {
 public:
     /// Of an image of width x height pixels that shows what the scene's film does. Keeps a reference to `scene`.
     PathTracer(const RenderScene& scene, int width, int height, const PathTracerOptions& options = {});
+    PathTracer(const PathTracer&) = delete;
+    PathTracer& operator=(const PathTracer&) = delete;
 
     /// Traces the paths named by batch.ids; fills batch.radiance and batch.first_object. False, and no result, when
     /// `cancelled` became true on the way. `record`, where given, is told what a batch of one path does.
     bool trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record = nullptr) const;
+
+    /// What has to be traced beside the camera paths; null where there is nothing.
+    const LightTracer* light_tracer() const { return light_tracer_ ? &*light_tracer_ : nullptr; }
 
     /// ObjectId::value of the object that a Hit::object belongs to; 0 for kNone.
     std::uint32_t object_id(std::uint32_t hit_object) const {
@@ -33,8 +44,6 @@ public:
     }
 
 private:
-    struct Interaction;
-
     void camera_rays(PathBatch& batch) const;
     void intersect(PathBatch& batch) const;
     void surface_interactions(PathBatch& batch) const;
@@ -43,19 +52,28 @@ private:
 
     Color environment_light(const PathState& state, const Vec3& direction) const;
     Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;
-    void sample_light(PathBatch& batch, const PathState& state, const Interaction& at, int bounce) const;
-    bool scatter(PathBatch& batch, PathState& state, Ray& ray, const Interaction& at, int bounce) const;
+    void sample_light(PathBatch& batch, const PathState& state, const Interaction& at, const AimedBsdf& bsdf,
+                      int bounce) const;
+    void split(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
+               int bounce) const;
+    void scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
+                 int bounce) const;
+    float light_ratio(const PathState& state, const Ray& ray, const Interaction& at, const Vec3& wi,
+                      const BsdfSample& sample, int bounce) const;
     float scattering_weight(float bsdf_pdf, float light_pdf) const;
 
     const RenderScene& scene_;
     int width_, height_;
     PathTracerOptions options_;
     CameraRays camera_;
+    std::uint32_t parts_seed_;
     int rr_start_;
     bool light_sampling_;
+    std::optional<LightTracer> light_tracer_;
 };
 
-/// Replays one sample of the scene's film: the same stages on a batch of one, the same radiance to the last bit.
+/// Replays one sample of the scene's film: the same stages on a batch of one, the same radiance to the last bit. What the
+/// paths of the light tracer bring to the pixel is not part of any sample.
 Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options = {},
                 PathRecord* record = nullptr);
 

@@ -118,7 +118,9 @@ void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& canc
     const auto start = Clock::now();
     PassControl control{.cancelled = cancelled, .paths_done = paths_done};
     if (pass.stop_at > 0) control.stop_at = start + to_duration(pass.stop_at - render_seconds_);
-    const PathTracer tracer(*render_scene_, size.x, size.y, options_);
+    PathTracerOptions options = options_;
+    if (coarse) options.light_tracing = false;  // a preview has no time for it
+    const PathTracer tracer(*render_scene_, size.x, size.y, options);
     const RayCounts traced = arena_.execute([&] { return target.add_samples(tracer, samples, control); });
 
     const double seconds = seconds_since(start);

@@ -29,7 +29,8 @@ PackedMaterial pack(const Material& material) {
             .textured = textured,
             .emissive = is_emissive(material),
             .smooth = !is_specular_only(material),
-            .transmits = transmits(material)};
+            .transmits = transmits(material),
+            .delta = has_delta_lobe(material)};
 }
 
 std::vector<PackedMaterial> pack_all(const Scene& scene) {
@@ -58,6 +59,20 @@ std::optional<TracedShape> traced_shape(const Shape& shape) {
 int tie_rank(const GeometryInstance& instance) {
     if (std::holds_alternative<Sphere>(instance.shape) || std::holds_alternative<Box>(instance.shape)) return 2;
     return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(instance.shape) ? 1 : 0;
+}
+
+/// A ball that holds the instance, if it is anywhere.
+std::optional<Ball> ball_around(const GeometryInstance& instance) {
+    if (std::holds_alternative<Plane>(instance.shape)) return Ball{Vec3(0), kInfinity};
+    if (const auto* sphere = std::get_if<Sphere>(&instance.shape)) {
+        if (const auto world = world_sphere(*sphere, instance.to_world)) {
+            return Ball{Vec3(world->center), static_cast<float>(world->radius)};
+        }
+    }
+    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape);
+    const Bounds3 bounds = world_bounds(TracedObject(instance), instance, mesh ? (*mesh)->bounds : Bounds3());
+    if (bounds.empty() || !is_finite(bounds.lo) || !is_finite(bounds.hi)) return std::nullopt;
+    return Ball{bounds.center(), 0.5f * glm::length(bounds.extent())};
 }
 
 std::uint64_t bytes(const TriangleMesh& mesh) {
@@ -166,7 +181,20 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
                                                            next->scene_->environment);
     }
     next->features_ = next->find_features();
+    if (lights || materials || objects) next->emission_ = next->find_emission();
     return next;
+}
+
+std::shared_ptr<const LightEmission> RenderScene::find_emission() const {
+    if (!features_.emitters || !features_.light_sampling()) return nullptr;
+    std::vector<Ball> targets;
+    for (std::uint32_t i = 0; i < objects_->size(); ++i) {
+        if (!packed_material(i).delta) continue;
+        if (const auto ball = ball_around(accelerator_->instances()[i])) targets.push_back(*ball);
+    }
+    if (targets.empty()) return nullptr;
+    auto emission = std::make_shared<const LightEmission>(lights_, std::move(targets));
+    return emission->empty() ? nullptr : emission;
 }
 
 Features RenderScene::find_features() const {
@@ -184,7 +212,8 @@ Features RenderScene::find_features() const {
 }
 
 std::uint64_t RenderScene::memory_bytes() const {
-    std::uint64_t total = accelerator_->stats().memory_bytes + lights_->memory_bytes();
+    std::uint64_t total =
+        accelerator_->stats().memory_bytes + lights_->memory_bytes() + (emission_ ? emission_->memory_bytes() : 0);
     std::unordered_set<const void*> seen;
     const auto add = [&](const auto& data) {
         if (seen.insert(&data).second) total += bytes(data);

@@ -2,6 +2,7 @@
 
 #include "core/accel/accelerator.h"
 #include "core/lights/environment_light.h"
+#include "core/lights/light_emission.h"
 #include "core/lights/light_table.h"
 #include "core/materials/bsdf.h"
 #include "core/render/features.h"
@@ -22,6 +23,7 @@ struct PackedMaterial {
     bool emissive = false;
     bool smooth = true;  ///< Light samples can contribute.
     bool transmits = false;
+    bool delta = false;  ///< Has a delta lobe.
 };
 
 /// What the kernels read, derived from a Scene: flattened objects, packed materials, trees, lights. Immutable; parts that
@@ -42,6 +44,8 @@ public:
     const Features& features() const { return features_; }
     const Accelerator& accelerator() const { return *accelerator_; }
     const LightTable& lights() const { return *lights_; }
+    /// Rays from the lamps towards mirrors and glass; null where there are none of either.
+    const LightEmission* emission() const { return emission_.get(); }
     const EnvironmentLight& environment() const { return environment_; }
     /// The scene object a Hit::object belongs to, and its material.
     ObjectId object_id(std::uint32_t hit_object) const { return (*objects_)[hit_object].id; }
@@ -62,6 +66,7 @@ private:
 
     void flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const;
     Features find_features() const;
+    std::shared_ptr<const LightEmission> find_emission() const;
 
     std::shared_ptr<const Scene> scene_;
     Vec3 origin_{0};
@@ -69,6 +74,7 @@ private:
     std::shared_ptr<const PackedMaterials> materials_;  ///< The default material, then the scene's.
     std::shared_ptr<const Accelerator> accelerator_;
     std::shared_ptr<const LightTable> lights_;
+    std::shared_ptr<const LightEmission> emission_;
     EnvironmentLight environment_;
     Features features_;
 };

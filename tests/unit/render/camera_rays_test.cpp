@@ -46,6 +46,77 @@ TEST(CameraRays, LensRaysMeetOnTheFocusPlane) {
     }
 }
 
+TEST(CameraRays, ViewIsTheReverseOfRay) {
+    for (const float lens_radius : {0.0f, 0.4f}) {
+        Camera camera;
+        camera.position = Vec3(1, 2, 3);
+        camera.target = Vec3(-2, 1, 0);
+        camera.vfov = 70;
+        camera.lens_radius = lens_radius;
+        camera.focus_distance = 3;
+        const CameraRays rays(camera, 1.4);
+        for (const Vec2 position : {Vec2(0.1f, 0.2f), Vec2(0.9f, 0.5f), Vec2(0.5f), Vec2(1.2f, -0.3f)}) {
+            for (const Vec2 lens : {Vec2(0), Vec2(1, 0), Vec2(-0.6f, 0.3f)}) {
+                for (const float t : {0.1f, 2.0f, 50.0f}) {
+                    const Ray ray = rays.ray(position, lens);
+                    const auto view = rays.view(ray.at(t), lens);
+                    ASSERT_TRUE(view);
+                    EXPECT_EQ(view->origin, ray.origin);
+                    EXPECT_LT(glm::length(view->position - position), 1e-5f);
+                    EXPECT_FALSE(rays.view(ray.at(-t), lens)) << "behind";
+                }
+            }
+        }
+    }
+}
+
+TEST(CameraRays, DensityIsThatOfTheRays) {
+    Camera camera;
+    camera.vfov = 90;
+    for (const float lens_radius : {0.0f, 0.4f}) {
+        camera.lens_radius = lens_radius;
+        const CameraRays rays(camera, 1.5);
+        for (const Vec2 position : {Vec2(0.5f), Vec2(0.05f, 0.1f), Vec2(0.9f, 0.3f)}) {
+            const Vec2 lens(0.3f, -0.8f);
+            constexpr float kStep = 1e-2f;
+            const auto direction = [&](float x, float y) {
+                return rays.ray(position + kStep * Vec2(x, y), lens).direction;
+            };
+            const Vec3 across = direction(0.5f, 0) - direction(-0.5f, 0),
+                       down = direction(0, 0.5f) - direction(0, -0.5f);
+            const float solid_angle = glm::length(glm::cross(across, down));
+            EXPECT_NEAR(rays.density(direction(0, 0)) * solid_angle / (kStep * kStep), 1, 1e-3);
+        }
+    }
+}
+
+TEST(PixelFilter, DensityIsThatOfTheSamples) {
+    for (const PixelFilter filter : {PixelFilter::box, PixelFilter::tent, PixelFilter::gaussian}) {
+        // Shares of a grid of cells that covers the largest filter.
+        constexpr int kCells = 12, kSamples = 1 << 16, kPoints = 16;
+        constexpr float kSide = 3.2f / kCells;
+        std::array<std::array<double, kCells>, kCells> share{};
+        for (std::uint32_t i = 0; i < kSamples; ++i) {
+            const Vec2 offset = sample_filter(filter, Sampler(SamplerKind::sobol, 0, 0, i).get_2d(0));
+            EXPECT_LE(std::max(std::abs(offset.x), std::abs(offset.y)), filter_radius(filter));
+            const glm::ivec2 cell((offset + 1.6f) / kSide);
+            share[static_cast<std::size_t>(cell.y)][static_cast<std::size_t>(cell.x)] += 1.0 / kSamples;
+        }
+        for (int y = 0; y < kCells; ++y) {
+            for (int x = 0; x < kCells; ++x) {
+                double mass = 0;
+                for (int k = 0; k < kPoints * kPoints; ++k) {
+                    const Vec2 inside((static_cast<float>(k % kPoints) + 0.5f) / kPoints,
+                                      (static_cast<float>(k / kPoints) + 0.5f) / kPoints);
+                    mass += filter_density(filter, (Vec2(glm::ivec2(x, y)) + inside) * kSide - 1.6f);
+                }
+                mass *= kSide * kSide / (kPoints * kPoints);
+                EXPECT_NEAR(share[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)], mass, 2e-3);
+            }
+        }
+    }
+}
+
 TEST(CameraRays, DegenerateViewsGiveUnitDirections) {
     Camera along_up;
     along_up.position = Vec3(0, 5, 0);

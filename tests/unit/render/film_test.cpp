@@ -45,6 +45,41 @@ TEST(Film, RejectsAndCountsByCause) {
     EXPECT_THAT(film.rejected(), testing::ElementsAre(0, 0, 0));
 }
 
+TEST(Film, ShowsTheMeanOfSamplesPlusTheMeanOfRounds) {
+    Film film(2, 1);
+    film.add(0, 0, Color(1));
+    film.add(0, 1, Color(3));
+    film.splat(0, 0, Color(8));
+    film.splat(1, 0, Color(4));
+    film.splat(0, 0, Color(NAN));
+    film.end_round(0);
+    EXPECT_EQ(film.mean(0), Vec3d(10));
+    film.splat(0, 1, Color(2));
+    film.splat(0, 1, Color(2));
+    film.end_round(1);
+    film.end_round(2);
+    EXPECT_EQ(film.rounds(), 3u);
+    EXPECT_EQ(film.mean(0), Vec3d(2 + 12 / 3.0));
+    EXPECT_EQ(film.mean(1), Vec3d(4 / 3.0));
+    EXPECT_EQ(film.rejected()[0], 1u);
+    film.clear(0);
+    film.clear_splats();
+    EXPECT_EQ(film.mean(0), Vec3d(0));
+    EXPECT_EQ(film.rounds(), 0u);
+}
+
+TEST(Film, RelativeErrorSeesTheRounds) {
+    // Two halves that differ by 2 in one pixel: an error of (2 / 2)^2 over the mean's square + 0.01.
+    Film film(1, 1);
+    film.add(0, 0, Color(1));
+    film.add(0, 1, Color(1));
+    film.splat(0, 0, Color(2));
+    film.end_round(0);
+    EXPECT_EQ(film.relative_error(), 0) << "half of the rounds are missing";
+    film.end_round(1);
+    EXPECT_NEAR(film.relative_error(), 1 / (4 + 0.01), 1e-12);
+}
+
 TEST(Film, NegativeZeroIsNotNegative) {
     EXPECT_FALSE(rejection(Color(-0.0f)));
 }
