@@ -26,7 +26,7 @@ LIBRARIES = {
     r"CLI/": ["app", "assets"],
     r"tbb/|oneapi/": ["core/accel", "core/render", "core/io", "tests", "assets"],
     r"hwy/": ["core/accel", "core/lights", "core/render", "tests"],
-    r"embree\d/": ["tests"],
+    r"embree\d/": ["app", "tests"],
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)

@@ -70,14 +70,13 @@ bool KdAccelerator::build_objects(BuildControl& control) {
         if (objects_[i].is_plane()) planes_.push_back(i);
         if (!mesh) ++stats_.primitives;
     }
-    auto tree = build_kd_tree(
-        {.bounds = bounds, .split = settings_.split, .leaf_size = settings_.leaf_size, .split_below_leaf_size = true},
-        control);
+    auto tree = build_kd_tree({.bounds = bounds, .split = settings_.split, .leaf_size = settings_.leaf_size}, control);
     if (!tree) return false;
     tree_ = std::move(*tree);
+    leaves_ = make_object_leaves(objects_, tree_);
     for (const auto& mesh_tree : mesh_trees_) stats_ += mesh_tree->stats;
     stats_ += tree_.stats();
-    stats_.memory_bytes += objects_.size() * sizeof(TracedObject);
+    stats_.memory_bytes += objects_.size() * sizeof(TracedObject) + leaves_.memory_bytes();
     return true;
 }
 

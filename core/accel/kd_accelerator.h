@@ -28,7 +28,7 @@ private:
     KdAccelerator() = default;
     bool build_meshes(const KdAccelerator* previous, BuildControl& control);
     bool build_objects(BuildControl& control);
-    KdScene scene() const { return {objects_, mesh_of_object_, planes_, &tree_}; }
+    KdScene scene() const { return {objects_, mesh_of_object_, planes_, &tree_, &leaves_}; }
 
     std::vector<GeometryInstance> instances_;
     AccelSettings settings_;
@@ -37,6 +37,7 @@ private:
     std::vector<std::shared_ptr<const MeshTree>> mesh_trees_;
     std::vector<const MeshTree*> mesh_of_object_;
     KdTree tree_;
+    ObjectLeaves leaves_;
     AccelStats stats_;
 };
 

@@ -17,7 +17,8 @@ constexpr std::size_t kTaskReferences = 8192;
 struct NodeTask {
     Bounds3 cell;
     int depth = 0;
-    std::uint64_t duplicates_left = 0;  ///< References that cuts below may add.
+    std::uint64_t duplicates_left = 0;                 ///< References that cuts below may add.
+    std::uint64_t nodes_left = KdNode::kMaxNodes - 1;  ///< That may stand below.
 };
 
 /// A tree of its own: nodes[0] is its root, indices count from its own beginning.
@@ -116,14 +117,14 @@ private:
     }
 
     std::optional<KdCut> choose_cut(std::span<const KdReference> references, const NodeTask& task) const {
-        if (task.depth >= kKdMaxDepth || references.empty()) return {};
+        if (task.depth >= kKdMaxDepth || task.nodes_left < 2 || references.empty()) return {};
         const auto cut = input_.split == KdSplit::median ? median_cut(references, task) : sah_cut(references, task);
         return cut && cut->duplicates <= task.duplicates_left ? cut : std::nullopt;
     }
 
     std::optional<KdCut> sah_cut(std::span<const KdReference> references, const NodeTask& task) const {
         const auto n = references.size();
-        if (n <= static_cast<std::size_t>(input_.leaf_size) && !input_.split_below_leaf_size) return {};
+        if (n <= static_cast<std::size_t>(input_.leaf_size)) return {};
         const auto cut = find_sah_cut(references, task.cell, input_.step_cost);
         return cut && cut->cost < static_cast<double>(n) ? cut : std::nullopt;
     }
@@ -175,6 +176,9 @@ private:
         const std::uint64_t left = task.duplicates_left - std::min(added, task.duplicates_left);
         task_below.duplicates_left = both == 0 ? 0 : left * below / both;
         task_above.duplicates_left = left - task_below.duplicates_left;
+        const std::uint64_t nodes = task.nodes_left - 2;
+        task_below.nodes_left = both == 0 ? 0 : nodes * below / both;
+        task_above.nodes_left = nodes - task_below.nodes_left;
         return {task_below, task_above};
     }
 
@@ -204,6 +208,10 @@ std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& con
     Subtree built = Builder(input, control).build_task(std::move(references), root);
     if (control.cancelled) return {};
     tree.nodes = std::move(built.nodes);
+    for (KdNode& node : tree.nodes) {
+        if (node.is_leaf()) continue;
+        node.set_empty(tree.nodes[node.children()].is_empty_leaf(), tree.nodes[node.children() + 1].is_empty_leaf());
+    }
     tree.references = std::move(built.references);
     return tree;
 }

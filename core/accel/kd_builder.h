@@ -14,8 +14,6 @@ struct KdBuildInput {
     KdSplit split = KdSplit::sah;
     int leaf_size = 16;
     float step_cost = 1;  ///< Of a step of traversal, in tests of one primitive (sah).
-    /// Whether sah may cut a node of up to leaf_size primitives where that pays.
-    bool split_below_leaf_size = false;
 };
 
 /// The tree does not depend on the number of threads. References stay below 9 times the primitives (or a million), so that a

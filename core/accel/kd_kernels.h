@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/accel/mesh_tree.h"
+#include "core/accel/object_leaves.h"
 #include "core/accel/traced_object.h"
 
 #include <span>
@@ -13,6 +14,7 @@ struct KdScene {
     std::span<const MeshTree* const> mesh_trees;  ///< One an object; null for all but meshes.
     std::span<const std::uint32_t> planes;        ///< Objects that no tree can hold.
     const KdTree* tree = nullptr;                 ///< Over all other objects.
+    const ObjectLeaves* leaves = nullptr;         ///< Of that tree.
 };
 
 /// Accelerator::intersect and Accelerator::occluded by the widest instructions of this machine.

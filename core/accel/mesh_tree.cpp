@@ -1,6 +1,7 @@
 #include "core/accel/mesh_tree.h"
 
 #include "core/accel/parallel.h"
+#include "core/accel/triangle_runs.h"
 
 #include <algorithm>
 
@@ -22,31 +23,22 @@ std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildContro
 }
 
 void write_leaf(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, float* runs) {
-    const std::size_t n = triangles.size();
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
         const glm::uvec3& t = mesh.triangles[triangles[i]];
-        Bounds3 bounds;
-        for (int corner = 0; corner < 3; ++corner) {
-            const Vec3& vertex = mesh.positions[t[corner]];
-            for (int axis = 0; axis < 3; ++axis)
-                runs[static_cast<std::size_t>(3 * corner + axis) * n + i] = vertex[axis];
-            bounds.extend(vertex);
-        }
-        runs[9 * n + i] = max_component(bounds.extent());
+        write_triangle({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, i, triangles.size(), runs);
     }
 }
 
-std::unique_ptr<float[]> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, const BuildControl& control) {
-    const std::size_t size = MeshTree::kRuns * tree.references.size();
-    auto data = std::make_unique_for_overwrite<float[]>(size + MeshTree::kPadding);
-    std::fill_n(data.get() + size, MeshTree::kPadding, 0.0f);
+std::vector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, const BuildControl& control) {
+    const std::size_t size = kTriangleRuns * tree.references.size();
+    std::vector<float> data(size + kRunPadding);
     parallel_ranges(tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled) return;
         for (std::size_t i = begin; i < end; ++i) {
             const KdNode& node = tree.nodes[i];
             if (!node.is_leaf() || node.count() == 0) continue;
             write_leaf(mesh, std::span(tree.references).subspan(node.first(), node.count()),
-                       data.get() + MeshTree::kRuns * node.first());
+                       data.data() + kTriangleRuns * node.first());
         }
     });
     return data;
@@ -68,8 +60,7 @@ std::shared_ptr<const MeshTree> build_mesh_tree(std::shared_ptr<const TriangleMe
     if (control.cancelled) return nullptr;
     result->stats = result->tree.stats();
     result->stats.primitives = mesh->triangles.size();
-    result->stats.memory_bytes +=
-        (MeshTree::kRuns * result->tree.references.size() + MeshTree::kPadding) * sizeof(float);
+    result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
     result->mesh = std::move(mesh);
     return result;
 }

@@ -11,13 +11,9 @@ namespace rayuela {
 struct MeshTree {
     std::shared_ptr<const TriangleMesh> mesh;
     KdTree tree;
-    /// For a leaf with `count` references from `first`: 10 runs of `count` floats from kRuns * first on: x, y, z of the three
-    /// vertices, then the largest extent of the triangle along an axis. Reading up to kPadding floats too far is allowed.
-    std::unique_ptr<float[]> leaf_data;
+    /// The runs (triangle_runs.h) of a leaf with references from `first` begin at kTriangleRuns * first.
+    std::vector<float> leaf_data;
     AccelStats stats;
-
-    static constexpr std::size_t kRuns = 10;
-    static constexpr std::size_t kPadding = 64;
 };
 
 /// Null when cancelled.

@@ -42,6 +42,7 @@ struct TracedRay {
     RayD ray;
     TriangleRay triangle_ray;
 
+    TracedRay() = default;
     explicit TracedRay(const RayD& r) : ray(r), triangle_ray(r) {}
 };
 

@@ -10,7 +10,7 @@ struct BsdfSample {
     Color weight{0};        ///< eval / pdf, cosine included; for a delta lobe the ratio of the two deltas.
     float pdf = 0;          ///< Per solid angle; of a delta lobe: the probability of having chosen it.
     bool specular = false;  ///< From a delta lobe: no light sampling can find it.
-    float eta = 1;          ///< Refractive index on the side of wi, relative to that of wo, where a delta lobe bends light.
+    float eta = 1;  ///< Refractive index on the side of wi, relative to that of wo, where a delta lobe bends light.
 };
 
 /// What a Bsdf says about a pair of directions. Delta lobes contribute nothing.

@@ -113,7 +113,9 @@ struct Principled {
     PrincipledBsdf bsdf(const Vec2& uv) const;
     bool is_specular_only() const;
     bool transmits() const { return !(transmission.value == 0); }
-    bool has_delta_lobe() const { return is_smooth_everywhere(roughness) || (clearcoat > 0 && alpha_of(clearcoat_roughness) < kSmoothAlpha); }
+    bool has_delta_lobe() const {
+        return is_smooth_everywhere(roughness) || (clearcoat > 0 && alpha_of(clearcoat_roughness) < kSmoothAlpha);
+    }
     Emission emission() const { return {emissive, emissive_strength, false}; }
     bool operator==(const Principled&) const = default;
 };

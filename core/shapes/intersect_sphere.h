@@ -14,6 +14,9 @@ struct SphereD {
     double radius = 1;
 };
 
+/// Closer than this to the surface, in radii, distance - radius is what the roundings have left of it.
+inline constexpr double kSphereCancels = 0x1p-20;
+
 /// First hit in `range`. Solved in double with the discriminant from the point of closest approach and the roots without
 /// cancellation (Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019): a float
 /// solve of a ground sphere is wrong by more than its t.
@@ -28,9 +31,7 @@ inline bool intersect_sphere(const SphereD& sphere, const RayD& ray, const TRang
 
     const double distance = glm::length(from_center);
     double c = (distance - sphere.radius) * (distance + sphere.radius);
-    // Close to the surface that difference is what the roundings have left of it.
-    constexpr double kCancels = 0x1p-20;
-    if (std::fabs(distance - sphere.radius) <= kCancels * sphere.radius)
+    if (std::fabs(distance - sphere.radius) <= kSphereCancels * sphere.radius)
         c = squared_distance_excess(ray.origin, sphere.center, sphere.radius);
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
     double t0 = q == 0 ? 0 : c / q;

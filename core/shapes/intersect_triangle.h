@@ -63,25 +63,28 @@ inline bool intersect_triangle(const TriangleRay& ray, const Vec3& va, const Vec
     return true;
 }
 
-/// Corners in turn, sharing their vertices with neighbours. u, v run along the edges from the first corner to the second
-/// and to the fourth. Two triangles over one diagonal: as watertight as they are.
+/// The halves of a quad over one diagonal, as corners: as watertight as triangles are.
+inline constexpr std::array<std::array<std::size_t, 3>, 2> kQuadHalves{{{0, 1, 2}, {0, 2, 3}}};
+
+/// Barycentrics of a half to the parameters of its quad, which run along the edges from the first corner to the second and to
+/// the fourth.
+inline void set_quad_parameters(std::size_t half, ShapeHit& hit) {
+    (half == 0 ? hit.u : hit.v) = std::fmin(hit.u + hit.v, 1.0f);
+}
+
+/// Corners in turn. The closer half counts, the first where both are as close.
 inline bool intersect_quad(const TriangleRay& ray, const std::array<Vec3, 4>& corners, const TRange& range,
                            ShapeHit& hit) {
-    ShapeHit second;
-    const bool in_first = intersect_triangle(ray, corners[0], corners[1], corners[2], range, hit);
-    // On the diagonal (u is 0) both are hit, at t that may differ in the last bit: the closer one counts.
-    if (in_first && hit.u > 0) {
-        hit.u = std::fmin(hit.u + hit.v, 1.0f);
-        return true;
+    bool found = false;
+    for (std::size_t half = 0; half < 2; ++half) {
+        const auto& [a, b, c] = kQuadHalves[half];
+        ShapeHit other;
+        if (!intersect_triangle(ray, corners[a], corners[b], corners[c], range, other)) continue;
+        set_quad_parameters(half, other);
+        if (!found || other.t < hit.t) hit = other;
+        found = true;
     }
-    if (intersect_triangle(ray, corners[0], corners[2], corners[3], range, second) &&
-        !(in_first && hit.t <= second.t)) {
-        hit = second;
-        hit.v = std::fmin(hit.u + hit.v, 1.0f);
-        return true;
-    }
-    if (in_first) hit.u = hit.v;
-    return in_first;
+    return found;
 }
 
 }  // namespace rayuela

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "app/bench_meshes.h"
+#include "core/accel/accelerator.h"
+
+#include <array>
+
+namespace rayuela {
+
+/// Rays as paths through a scene make them. Shadow rays ask only whether something is in the way.
+enum class RayKind { primary, bounce, bounce_shuffled, shadow, shadow_from_bounce };
+
+struct RaySet {
+    RayKind kind;
+    std::string_view name;
+    std::vector<Ray> rays;
+
+    bool any_hit() const { return kind == RayKind::shadow || kind == RayKind::shadow_from_bounce; }
+};
+
+/// Camera rays of `side` x `side` pixels in blocks of 16 x 16, diffuse bounces and shadow rays from where they arrive.
+std::vector<RaySet> make_ray_sets(const Accelerator& scene, const BenchMesh& view, int side);
+
+}  // namespace rayuela

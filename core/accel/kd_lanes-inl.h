@@ -1,0 +1,213 @@
+// Compiled once for each set of instructions (Google Highway), hence no plain include guard.
+#if defined(RAYUELA_CORE_ACCEL_KD_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYUELA_CORE_ACCEL_KD_LANES_INL_H_
+#undef RAYUELA_CORE_ACCEL_KD_LANES_INL_H_
+#else
+#define RAYUELA_CORE_ACCEL_KD_LANES_INL_H_
+#endif
+
+#include "core/accel/kd_tree.h"
+
+#include <hwy/highway.h>
+
+#include <span>
+
+#include "core/accel/lane_types-inl.h"
+#include "core/accel/ray_block-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+/// A value for each axis and lane.
+using LaneAxes = float[3][kLanes];
+
+struct AxisChoice {
+    FloatMask x, z;
+
+    HWY_INLINE explicit AxisChoice(Words axis) {
+        const WordTag dw;
+        x = hn::RebindMask(FloatTag(), hn::Eq(axis, hn::Zero(dw)));
+        z = hn::RebindMask(FloatTag(), hn::Eq(axis, hn::Set(dw, 2)));
+    }
+    HWY_INLINE Floats of(const LaneAxes& values) const {
+        const FloatTag d;
+        return hn::IfThenElse(x, hn::Load(d, values[0]),
+                              hn::IfThenElse(z, hn::Load(d, values[2]), hn::Load(d, values[1])));
+    }
+};
+
+/// One ray a lane, each with its own node and stack. A step takes every lane that stands at an inner node one node on; lanes
+/// at a leaf stand still. Planes are passed RayBlock::pad early and late, so that the children overlap.
+class LaneGroup {
+public:
+    /// Lanes without a ray write to stacks of their own like all others.
+    LaneGroup() { hn::Store(hn::Iota(WordTag(), 0), WordTag(), height_); }
+
+    /// Puts a ray at the root.
+    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin_[axis][lane] = block.origin[axis][i];
+            inverse_[axis][lane] = block.inverse[axis][i];
+        }
+        pad_[lane] = block.pad[i];
+        begin_[lane] = block.begin[i];
+        end_[lane] = block.end[i];
+        limit_[lane] = block.limit[i];
+        node_[lane] = 0;
+        height_[lane] = static_cast<std::uint32_t>(lane);
+        active_ |= LaneBits{1} << lane;
+    }
+    LaneBits active() const { return active_; }
+    std::uint32_t node(std::size_t lane) const { return node_[lane]; }
+    /// What begins behind `t` no longer counts for the lane's ray.
+    void set_limit(std::size_t lane, float t) { limit_[lane] = t; }
+    /// The lane's ray has its answer.
+    void stop(std::size_t lane) { active_ &= ~(LaneBits{1} << lane); }
+
+    /// Number of lanes that moved.
+    HWY_INLINE std::size_t step(const KdNode* nodes) {
+        const FloatTag d;
+        const WordTag dw;
+        const Words node = hn::Load(dw, node_);
+        const WordPairs pair = gather_pairs(reinterpret_cast<const std::uint64_t*>(nodes), node);
+        const Floats plane = hn::BitCast(d, pair.low);
+        const Words axis = hn::And(pair.high, hn::Set(dw, 3));
+        const AxisChoice choice(axis);
+        const auto is_inner = hn::Ne(axis, hn::Set(dw, 3));
+        const Floats inverse = choice.of(inverse_);
+        const Floats middle = hn::Mul(hn::Sub(plane, choice.of(origin_)), inverse);
+        const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));
+        const Floats enter = hn::Sub(middle, pad), leave = hn::Add(middle, pad);
+        const Floats begin = hn::Load(d, begin_), end = hn::Load(d, end_);
+
+        const Words backward = hn::ShiftRight<31>(hn::BitCast(dw, inverse));
+        const Words one = hn::Set(dw, 1);
+        const Words empty = hn::ShiftRight<KdNode::kEmptyShift>(pair.high);
+        const FloatMask far_empty = hn::RebindMask(d, hn::TestBit(hn::Shr(empty, hn::Xor(backward, one)), one));
+        const FloatMask near_empty = hn::RebindMask(d, hn::TestBit(hn::Shr(empty, backward), one));
+        // An empty leaf is entered only where the ray passes nothing else here.
+        const FloatMask beyond = hn::Gt(enter, hn::Min(end, hn::Load(d, limit_))), before = hn::Lt(leave, begin);
+        const FloatMask only_far = hn::AndNot(beyond, hn::Or(before, near_empty));
+        const FloatMask only_near = hn::Or(beyond, far_empty);
+        const FloatMask both = hn::AndNot(hn::Or(only_near, only_far), hn::RebindMask(d, is_inner));
+        const Words children = hn::ShiftRight<KdNode::kChildrenShift>(pair.high);
+        const Words near = hn::Add(children, backward);
+        const Words far = hn::Add(children, hn::Xor(backward, one));
+
+        // What is written for the other lanes lies above the top of their stacks.
+        const Words height = hn::Load(dw, height_);
+        scatter_pairs({hn::Or(hn::ShiftLeft<2>(far), axis), hn::BitCast(dw, end)}, stack_, height);
+        const auto pushed = hn::RebindMask(dw, both);
+        hn::Store(hn::Add(height, hn::IfThenElseZero(pushed, hn::Set(dw, kLanes))), dw, height_);
+        const Words next = hn::IfThenElse(hn::RebindMask(dw, only_far), far, near);
+        hn::Store(hn::IfThenElse(is_inner, next, node), dw, node_);
+        hn::Store(hn::IfThenElse(both, hn::Min(leave, end), end), d, end_);
+        return hn::CountTrue(dw, is_inner);
+    }
+
+    /// Takes the lanes to the next nodes on their stacks that begin before their limits. Those that have none stop.
+    HWY_INLINE void pop(LaneBits lanes) {
+        const FloatTag d;
+        const WordTag dw;
+        const Words bottom = hn::Iota(dw, 0);
+        if (lanes == 0) return;
+        FloatMask todo = mask_of(lanes);
+        Words node = hn::Load(dw, node_), height = hn::Load(dw, height_);
+        Floats begin = hn::Load(d, begin_), end = hn::Load(d, end_);
+        const Floats limit = hn::Load(d, limit_), pad = hn::Load(d, pad_);
+        while (true) {
+            const FloatMask empty = hn::And(todo, hn::RebindMask(d, hn::Eq(height, bottom)));
+            active_ &= ~bits_of(empty);
+            todo = hn::AndNot(empty, todo);
+            if (hn::AllFalse(d, todo)) break;
+            const auto popped = hn::RebindMask(dw, todo);
+            height = hn::IfThenElse(popped, hn::Sub(height, hn::Set(dw, kLanes)), height);
+            const WordPairs entry = gather_pairs(stack_, height);
+            // The far child begins where the near one ended, less both pads and their rounding.
+            const Floats inverse = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(inverse_);
+            const Floats overlap = hn::Mul(hn::Mul(pad, hn::Abs(inverse)), hn::Set(d, 2.25f));
+            begin = hn::IfThenElse(todo, hn::Sub(end, overlap), begin);
+            end = hn::IfThenElse(todo, hn::BitCast(d, entry.high), end);
+            node = hn::IfThenElse(popped, hn::ShiftRight<2>(entry.low), node);
+            todo = hn::And(todo, hn::Gt(begin, limit));
+        }
+        hn::Store(node, dw, node_);
+        hn::Store(height, dw, height_);
+        hn::Store(begin, d, begin_);
+        hn::Store(end, d, end_);
+    }
+
+private:
+    alignas(64) LaneAxes origin_{}, inverse_{};
+    alignas(64) float pad_[kLanes] = {}, begin_[kLanes] = {}, end_[kLanes] = {}, limit_[kLanes] = {};
+    alignas(64) std::uint32_t node_[kLanes] = {}, height_[kLanes] = {};
+    alignas(64) std::uint64_t stack_[(kKdMaxDepth + 1) * kLanes];
+    LaneBits active_ = 0;
+};
+
+/// A ray that has come to a leaf with primitives.
+struct LeafVisit {
+    std::uint32_t slot;
+    const KdNode* leaf;
+};
+
+/// Many rays on their way through one tree.
+struct LaneGroups {
+    LaneGroup group[kGroups];
+
+    LaneGroup& of(std::size_t slot) { return group[slot / kLanes]; }
+    void set_limit(std::size_t slot, float t) { of(slot).set_limit(slot % kLanes, t); }
+    void stop(std::size_t slot) { of(slot).stop(slot % kLanes); }
+};
+
+/// Traces the rays of the block through the tree, many at once:
+/// `void start(slot, i)`: ray i of the block now has the slot;
+/// `void visit(span<const LeafVisit>, LaneGroups&)` tests the primitives of the leaves, then sets the limits of the slots or
+/// stops those that have their answers.
+template <typename Client>
+HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& client) {
+    LaneGroups groups;
+    const KdNode* const nodes = tree.nodes.data();
+    std::size_t next = 0;
+    const auto refill = [&](std::size_t g) HWY_ATTR {
+        constexpr LaneBits kAll = static_cast<LaneBits>((std::uint64_t{1} << kLanes) - 1);
+        for (LaneBits idle = kAll & ~groups.group[g].active(); idle != 0; idle &= idle - 1) {
+            const std::size_t lane = first_lane(idle), slot = g * kLanes + lane;
+            while (next < block.size && block.begin[next] > block.end[next]) ++next;
+            if (next == block.size) return;
+            client.start(slot, next);
+            groups.group[g].start(lane, block, next++);
+        }
+    };
+    while (true) {
+        int active = 0;
+        for (std::size_t g = 0; g < kGroups; ++g) {
+            refill(g);
+            active += std::popcount(groups.group[g].active());
+        }
+        if (active == 0) return;
+        const std::size_t few = static_cast<std::size_t>(active) / 4;
+        while (groups.group[0].step(nodes) + groups.group[1].step(nodes) > few) {
+        }
+
+        LeafVisit visits[kSlots];
+        std::size_t count = 0;
+        LaneBits at_leaf[kGroups] = {};
+        for (std::size_t g = 0; g < kGroups; ++g) {
+            for (LaneBits lanes = groups.group[g].active(); lanes != 0; lanes &= lanes - 1) {
+                const std::size_t lane = first_lane(lanes);
+                const KdNode& node = nodes[groups.group[g].node(lane)];
+                visits[count] = {static_cast<std::uint32_t>(g * kLanes + lane), &node};
+                at_leaf[g] |= LaneBits{node.is_leaf()} << lane;
+                count += node.is_leaf() && node.count() > 0 ? 1 : 0;
+            }
+        }
+        client.visit(std::span<const LeafVisit>(visits, count), groups);
+        for (std::size_t g = 0; g < kGroups; ++g) groups.group[g].pop(at_leaf[g] & groups.group[g].active());
+    }
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
