@@ -18,8 +18,14 @@ namespace rayuela {
 
 namespace {
 
-/// More than this many rays in a million that disagree with Embree's robust mode fail the benchmark.
-constexpr double kTolerated = 30;
+/// More than this many rays in a million that disagree with Embree's robust mode fail the benchmark, if there are too many
+/// to be chance: three standard deviations and one ray above.
+constexpr double kToleratedPpm = 30;
+
+bool too_many(double ppm, std::size_t rays) {
+    const double expected = kToleratedPpm * 1e-6 * static_cast<double>(rays);
+    return ppm * 1e-6 * static_cast<double>(rays) > expected + 3 * std::sqrt(expected) + 1;
+}
 
 struct RaysOptions {
     std::vector<std::string> meshes;
@@ -236,7 +242,7 @@ private:
                     const double ppm = disagreement(answers[k], queries[0], set.any_hit(), set.rays.size());
                     row[6] = fmt::format("{:.0f}", ppm);
                     entry["differs_ppm"] = ppm;
-                    if (ppm > kTolerated)
+                    if (too_many(ppm, set.rays.size()))
                         wrong.push_back(
                             fmt::format("{} and Embree on {:.0f} rays in a million", contestants[k].name, ppm));
                 }
