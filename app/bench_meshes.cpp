@@ -100,16 +100,8 @@ std::shared_ptr<const TriangleMesh> make_hall() {
     return sketch.finish();
 }
 
-std::shared_ptr<const TriangleMesh> make_land_1m() {
-    return make_bench_land(707);
-}
-std::shared_ptr<const TriangleMesh> make_land_6m() {
-    return make_bench_land(1732);
-}
-
-}  // namespace
-
-std::shared_ptr<const TriangleMesh> make_bench_land(std::uint32_t quads_a_side) {
+/// Open land of n x n quads.
+std::shared_ptr<const TriangleMesh> make_land(std::uint32_t quads_a_side) {
     MeshSketch sketch;
     sketch.add_grid(quads_a_side, quads_a_side, [](float s, float t) {
         const float x = 20 * s - 10, z = 20 * t - 10;
@@ -124,6 +116,15 @@ std::shared_ptr<const TriangleMesh> make_bench_land(std::uint32_t quads_a_side) 
     });
     return sketch.finish();
 }
+
+std::shared_ptr<const TriangleMesh> make_land_1m() {
+    return make_land(707);
+}
+std::shared_ptr<const TriangleMesh> make_land_6m() {
+    return make_land(1732);
+}
+
+}  // namespace
 
 std::vector<BenchMesh> bench_meshes() {
     const Vec3 x(1, 0, 0), z(0, 0, 1);

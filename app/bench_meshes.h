@@ -19,7 +19,4 @@ struct BenchMesh {
 /// From easy to hard: a closed room, a hall of slivers, open land twice.
 std::vector<BenchMesh> bench_meshes();
 
-/// Open land of n x n quads, for the cost of a ray as the mesh grows.
-std::shared_ptr<const TriangleMesh> make_bench_land(std::uint32_t quads_a_side);
-
 }  // namespace rayuela

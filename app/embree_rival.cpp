@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 
 #ifdef RAYUELA_EMBREE3
 #include <embree3/rtcore.h>
@@ -130,14 +129,12 @@ std::unique_ptr<const EmbreeRival> EmbreeRival::build(const TriangleMesh& mesh, 
     auto* indices = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
     for (const glm::uvec3& t : mesh.triangles) indices = std::copy(&t.x, &t.x + 3, indices);
-    const auto start = std::chrono::steady_clock::now();
     const double cpu_start = process_cpu_seconds();
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene.scene);
     rival->build_cpu_seconds_ = process_cpu_seconds() - cpu_start;
-    rival->build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return rival;
 }
 

@@ -44,7 +44,6 @@ public:
 
     /// Traces rays [begin, end) of the query; both are multiples of 16 or the very end.
     void trace(EmbreeQuery& query, std::size_t begin, std::size_t end) const;
-    double build_seconds() const { return build_seconds_; }
     double build_cpu_seconds() const { return build_cpu_seconds_; }
     std::uint64_t memory_bytes() const;
 
@@ -52,7 +51,7 @@ private:
     struct Scene;
     EmbreeRival();
     std::unique_ptr<Scene> scene_;
-    double build_seconds_ = 0, build_cpu_seconds_ = 0;
+    double build_cpu_seconds_ = 0;
 };
 
 }  // namespace rayuela

@@ -71,11 +71,7 @@ endif()
 
 include(ImGui)
 
+find_package(embree 3 QUIET)  # A rival of `rayuela bench rays`, nothing else.
 if(BUILD_TESTING)
     find_package(GTest REQUIRED)
-    find_package(benchmark QUIET)
-    find_package(embree 4 QUIET)
-    if(NOT embree_FOUND)
-        find_package(embree 3 QUIET)
-    endif()
 endif()

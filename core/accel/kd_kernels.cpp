@@ -45,6 +45,7 @@ void trace_candidates(const KdScene& scene, std::span<const Ray> rays, std::span
     std::uint32_t begin = 0;
     for (std::uint32_t object = 0; begin < work.sorted.size(); ++object) {
         const std::uint32_t end = work.first[object];
+        if (begin == end) continue;
         bool seen[kBlockRays] = {};
         std::uint32_t count = 0;
         for (; begin < end; ++begin) {
@@ -62,10 +63,7 @@ void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit>
     std::fill(hits.begin(), hits.end(), Hit());
     for (const std::uint32_t index : scene.planes) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            ShapeHit hit;
-            const TRange range{rays[i].t_min, std::min(rays[i].t_max, hits[i].t)};
-            if (can_hit(rays[i]) && intersect_shape(scene.objects[index], TracedRay(RayD(rays[i])), range, hit))
-                keep_closer(hit, index, hit.primitive, hits[i]);
+            if (can_hit(rays[i])) intersect_object(scene.objects, index, rays[i], hits[i]);
         }
     }
     std::uint32_t count = 0;

@@ -71,9 +71,9 @@ public:
         const Words node = hn::Load(dw, node_);
         const WordPairs pair = gather_pairs(reinterpret_cast<const std::uint64_t*>(nodes), node);
         const Floats plane = hn::BitCast(d, pair.low);
-        const Words axis = hn::And(pair.high, hn::Set(dw, 3));
+        const Words axis = hn::And(pair.high, hn::Set(dw, KdNode::kAxisMask));
         const AxisChoice choice(axis);
-        const auto is_inner = hn::Ne(axis, hn::Set(dw, 3));
+        const auto is_inner = hn::Ne(axis, hn::Set(dw, KdNode::kLeaf));
         const Floats inverse = choice.of(inverse_);
         const Floats middle = hn::Mul(hn::Sub(plane, choice.of(origin_)), inverse);
         const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));
@@ -117,7 +117,7 @@ public:
         const Floats limit = hn::Load(d, limit_), pad = hn::Load(d, pad_);
         while (true) {
             const FloatMask empty = hn::And(todo, hn::RebindMask(d, hn::Eq(height, bottom)));
-            active_ &= ~bits_of(empty);
+            active_ &= ~bits_of(d, empty);
             todo = hn::AndNot(empty, todo);
             if (hn::AllFalse(d, todo)) break;
             const auto popped = hn::RebindMask(dw, todo);

@@ -81,9 +81,10 @@ HWY_INLINE void scatter_pairs(const WordPairs& pairs, std::uint64_t* base, Words
 /// One bit a lane.
 using LaneBits = std::uint32_t;
 
-HWY_INLINE LaneBits bits_of(FloatMask mask) {
+template <typename Tag>
+HWY_INLINE LaneBits bits_of(Tag tag, hn::Mask<Tag> mask) {
     std::uint64_t bits = 0;
-    hn::StoreMaskBits(FloatTag(), mask, reinterpret_cast<std::uint8_t*>(&bits));
+    hn::StoreMaskBits(tag, mask, reinterpret_cast<std::uint8_t*>(&bits));
     return static_cast<LaneBits>(bits);
 }
 

@@ -17,6 +17,23 @@ namespace rayuela::HWY_NAMESPACE {
 
 enum class Query { closest, any };
 
+/// After the leaves visited were decided: rays with an answer stop, the others need to look no further than their hits.
+/// set_end(slot, t) tells those who test them.
+template <Query kQuery, typename SetEnd>
+HWY_INLINE void go_on(std::span<const LeafVisit> visits, const TriangleLanes& lanes, const RayBlock& block,
+                      std::span<const Ray> rays, std::span<const Hit> hits, LaneGroups& groups, const SetEnd& set_end) {
+    for (const LeafVisit& visit : visits) {
+        const std::uint32_t i = lanes.ray(visit.slot), id = block.id[i];
+        if (kQuery == Query::any && hits[id].valid()) {
+            groups.stop(visit.slot);
+        } else {
+            const float end = t_end(rays[id], hits[id]);
+            set_end(visit.slot, end);
+            groups.set_limit(visit.slot, end * block.t_scale[i]);
+        }
+    }
+}
+
 /// Rays of a block on their way through the mesh of one object.
 template <Query kQuery>
 class MeshClient {
@@ -25,7 +42,10 @@ public:
                std::span<Hit> hits)
         : mesh_(mesh), object_(object), block_(block), rays_(rays), hits_(hits), triangles_(block, rays) {}
 
-    HWY_INLINE void start(std::size_t slot, std::size_t i) { triangles_.start(slot, i, t_max(block_.id[i])); }
+    HWY_INLINE void start(std::size_t slot, std::size_t i) {
+        const std::uint32_t id = block_.id[i];
+        triangles_.start(slot, i, t_end(rays_[id], hits_[id]));
+    }
 
     HWY_INLINE void visit(std::span<const LeafVisit> visits, LaneGroups& groups) {
         for (const LeafVisit& visit : visits) {
@@ -37,20 +57,11 @@ public:
             }
         }
         decide();
-        for (const LeafVisit& visit : visits) {
-            const std::uint32_t i = triangles_.ray(visit.slot), id = block_.id[i];
-            if (kQuery == Query::any && hits_[id].valid()) {
-                groups.stop(visit.slot);
-            } else {
-                triangles_.set_end(visit.slot, t_max(id));
-                groups.set_limit(visit.slot, t_max(id) * block_.t_scale[i]);
-            }
-        }
+        go_on<kQuery>(visits, triangles_, block_, rays_, hits_, groups,
+                      [&](std::size_t slot, float end) HWY_ATTR { triangles_.set_end(slot, end); });
     }
 
 private:
-    float t_max(std::uint32_t id) const { return std::min(rays_[id].t_max, hits_[id].t); }
-
     HWY_INLINE void decide() {
         triangles_.decide([&](std::uint32_t i, std::uint32_t triangle, float t, float u, float v) HWY_ATTR {
             keep_closer({.t = t, .u = u, .v = v}, object_, triangle, hits_[block_.id[i]]);
@@ -88,8 +99,9 @@ public:
 
     HWY_INLINE void start(std::size_t slot, std::size_t i) {
         const std::uint32_t id = block_.id[i];
-        triangles_.start(slot, i, t_max(id));
-        if (!leaves_.spheres.empty()) spheres_.start(slot, i, t_max(id));
+        const float end = t_end(rays_[id], hits_[id]);
+        triangles_.start(slot, i, end);
+        if (!leaves_.spheres.empty()) spheres_.start(slot, i, end);
     }
 
     HWY_INLINE void visit(std::span<const LeafVisit> visits, LaneGroups& groups) {
@@ -101,21 +113,13 @@ public:
         }
         decide_triangles();
         decide_spheres();
-        for (const LeafVisit& visit : visits) {
-            const std::uint32_t i = triangles_.ray(visit.slot), id = block_.id[i];
-            if (kQuery == Query::any && hits_[id].valid()) {
-                groups.stop(visit.slot);
-            } else {
-                triangles_.set_end(visit.slot, t_max(id));
-                spheres_.set_end(visit.slot, t_max(id));
-                groups.set_limit(visit.slot, t_max(id) * block_.t_scale[i]);
-            }
-        }
+        go_on<kQuery>(visits, triangles_, block_, rays_, hits_, groups, [&](std::size_t slot, float end) HWY_ATTR {
+            triangles_.set_end(slot, end);
+            spheres_.set_end(slot, end);
+        });
     }
 
 private:
-    float t_max(std::uint32_t id) const { return std::min(rays_[id].t_max, hits_[id].t); }
-
     HWY_INLINE void add_triangles(std::size_t slot, const ObjectLeaf& leaf) {
         const float* const runs = leaves_.triangle_runs.data() + kTriangleRuns * leaf.first_triangle;
         for (std::size_t i = 0; i < leaf.triangles; i += kLanes) {
@@ -150,12 +154,9 @@ private:
         const std::uint32_t id = block_.id[triangles_.ray(slot)];
         if (scene_.mesh_trees[object]) {
             candidates_.push_back({object, id});
-            return;
+        } else {
+            intersect_object(scene_.objects, object, rays_[id], hits_[id]);
         }
-        ShapeHit hit;
-        const TRange range{rays_[id].t_min, t_max(id)};
-        if (intersect_shape(scene_.objects[object], TracedRay(RayD(rays_[id])), range, hit))
-            keep_closer(hit, object, hit.primitive, hits_[id]);
     }
 
     const KdScene& scene_;

@@ -70,8 +70,9 @@ public:
     /// Spheres i to i + kLanes of the n of a leaf; names[k] is the object that sphere k is. True when `decide` must be
     /// called before the next.
     HWY_INLINE bool add(std::size_t slot, const float* runs, std::size_t n, std::size_t i, const std::uint32_t* names) {
-        const FloatMask hit = hn::And(may_hit(filter_[slot], runs + i, n), hn::FirstN(FloatTag(), n - i));
-        for (LaneBits bits = bits_of(hit); bits != 0; bits &= bits - 1) {
+        const FloatTag d;
+        const FloatMask hit = hn::And(may_hit(filter_[slot], runs + i, n), hn::FirstN(d, n - i));
+        for (LaneBits bits = bits_of(d, hit); bits != 0; bits &= bits - 1) {
             ray_[size_] = ray_of_slot_[slot];
             name_[size_++] = names[i + first_lane(bits)];
         }
@@ -91,10 +92,8 @@ private:
         if (hn::AllFalse(dd, cancels)) return excess;
         alignas(64) double values[hn::MaxLanes(DoubleTag())];
         hn::Store(excess, dd, values);
-        std::uint64_t bits = 0;
-        hn::StoreMaskBits(dd, cancels, reinterpret_cast<std::uint8_t*>(&bits));
-        for (; bits != 0; bits &= bits - 1) {
-            const auto k = static_cast<std::size_t>(std::countr_zero(bits)), at = std::min(first + k, size_ - 1);
+        for (LaneBits bits = bits_of(dd, cancels); bits != 0; bits &= bits - 1) {
+            const std::size_t k = first_lane(bits), at = std::min(first + k, size_ - 1);
             const SphereD& sphere = spheres_[name_[at]];
             values[k] = squared_distance_excess(Vec3d(rays_[block_.id[ray_[at]]].origin), sphere.center, sphere.radius);
         }
@@ -166,11 +165,8 @@ HWY_INLINE void SphereLanes::decide(std::span<const Hit> hits, const Accept& acc
         const auto inside = hn::Or(takes_first, contains(second));
         alignas(64) float t[kDoubles];
         hn::Store(hn::IfThenElse(takes_first, first, second), df, t);
-        std::uint64_t met_bits = 0, inside_bits = 0;
-        hn::StoreMaskBits(dd, met, reinterpret_cast<std::uint8_t*>(&met_bits));
-        hn::StoreMaskBits(df, inside, reinterpret_cast<std::uint8_t*>(&inside_bits));
-        for (std::uint64_t bits = met_bits & inside_bits; bits != 0; bits &= bits - 1) {
-            const auto k = static_cast<std::size_t>(std::countr_zero(bits));
+        for (LaneBits bits = bits_of(dd, met) & bits_of(df, inside); bits != 0; bits &= bits - 1) {
+            const std::size_t k = first_lane(bits);
             accept(ray_[i + k], name_[i + k], t[k]);
         }
     }

@@ -7,8 +7,10 @@
 #include "core/shapes/intersect_sphere.h"
 #include "core/shapes/intersect_triangle.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 namespace rayuela {
 
@@ -42,7 +44,6 @@ struct TracedRay {
     RayD ray;
     TriangleRay triangle_ray;
 
-    TracedRay() = default;
     explicit TracedRay(const RayD& r) : ray(r), triangle_ray(r) {}
 };
 
@@ -58,6 +59,18 @@ bool intersect_shape(const TracedObject& object, const TracedRay& world, const T
 inline void keep_closer(const ShapeHit& hit, std::uint32_t object, std::uint32_t primitive, Hit& best) {
     const Hit candidate{hit.t, hit.u, hit.v, object, primitive};
     if (is_closer(candidate, best)) best = candidate;
+}
+
+/// Where a hit must lie to come before `best`.
+inline float t_end(const Ray& ray, const Hit& best) {
+    return std::min(ray.t_max, best.t);
+}
+
+/// Makes the hit of the ray with an object that is no mesh the best one if it comes before it.
+inline void intersect_object(std::span<const TracedObject> objects, std::uint32_t index, const Ray& ray, Hit& best) {
+    ShapeHit hit;
+    if (intersect_shape(objects[index], TracedRay(RayD(ray)), {ray.t_min, t_end(ray, best)}, hit))
+        keep_closer(hit, index, hit.primitive, best);
 }
 
 /// World bounds of an object whose shape has `local` bounds; contains every point of it.

@@ -95,13 +95,14 @@ public:
     /// `names` is null. True when `decide` must be called before the next.
     HWY_INLINE bool add(std::size_t slot, const float* runs, std::size_t n, std::size_t i, const std::uint32_t* names,
                         std::uint32_t first_name) {
-        const FloatMask hit = hn::And(may_hit(filter_[slot], runs + i, n), hn::FirstN(FloatTag(), n - i));
+        const FloatTag d;
+        const FloatMask hit = hn::And(may_hit(filter_[slot], runs + i, n), hn::FirstN(d, n - i));
         found_[size_++] = {runs + i,
                            n,
                            names ? names + i : nullptr,
                            first_name + static_cast<std::uint32_t>(i),
                            static_cast<std::uint32_t>(slot),
-                           bits_of(hit)};
+                           bits_of(d, hit)};
         return size_ == kRoom;
     }
 
@@ -220,10 +221,8 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
         hn::Store(hn::Mul(hn::Mul(depth, inverse), ray(block_.inverse_z)), dd, t);
         hn::Store(hn::Mul(v, inverse), dd, us);
         hn::Store(hn::Mul(w, inverse), dd, vs);
-        std::uint64_t bits = 0;
-        hn::StoreMaskBits(dd, hit, reinterpret_cast<std::uint8_t*>(&bits));
-        for (; bits != 0; bits &= bits - 1) {
-            const auto k = static_cast<std::size_t>(std::countr_zero(bits));
+        for (LaneBits bits = bits_of(dd, hit); bits != 0; bits &= bits - 1) {
+            const std::size_t k = first_lane(bits);
             const std::uint32_t ray_index = candidates_.ray[i + k];
             const Ray& limits = rays_[block_.id[ray_index]];
             const auto at = static_cast<float>(t[k]);

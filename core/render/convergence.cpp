@@ -20,21 +20,13 @@ double on_power_law(double x, double x0, double y0, double x1, double y1) {
     return std::exp(on_line(std::log(x), std::log(x0), std::log(y0), std::log(x1), std::log(y1)));
 }
 
-/// Neighbours on the curve between which, or past which, `spp` lies.
-double seconds_at(const Curve& curve, double spp) {
-    if (curve.size() == 1) return curve[0].seconds * spp / curve[0].spp;
+/// The curve's y where its x is `at`, from the two points between which, or past which, that lies.
+double value_at(const Curve& curve, double CurvePoint::*x, double at, double CurvePoint::*y) {
+    if (curve.size() == 1) return curve[0].*y * at / curve[0].*x;
     std::size_t next = 1;
-    while (next + 1 < curve.size() && curve[next].spp < spp) ++next;
+    while (next + 1 < curve.size() && curve[next].*x < at) ++next;
     const CurvePoint &a = curve[next - 1], &b = curve[next];
-    return on_line(spp, a.spp, a.seconds, b.spp, b.seconds);
-}
-
-double samples_at(const Curve& curve, double seconds) {
-    if (curve.size() == 1) return curve[0].spp * seconds / curve[0].seconds;
-    std::size_t next = 1;
-    while (next + 1 < curve.size() && curve[next].seconds < seconds) ++next;
-    const CurvePoint &a = curve[next - 1], &b = curve[next];
-    return on_line(seconds, a.seconds, a.spp, b.seconds, b.spp);
+    return on_line(at, a.*x, a.*y, b.*x, b.*y);
 }
 
 }  // namespace
@@ -64,12 +56,12 @@ Reading samples_to(const Curve& curve, double target) {
 
 Reading seconds_to(const Curve& curve, double target) {
     const Reading samples = samples_to(curve, target);
-    return {seconds_at(curve, samples.value), samples.kind};
+    return {value_at(curve, &CurvePoint::spp, samples.value, &CurvePoint::seconds), samples.kind};
 }
 
 Reading error_at(const Curve& curve, double seconds) {
     if (seconds < curve.front().seconds) return {curve.front().error, Kind::before};
-    const double spp = samples_at(curve, seconds);
+    const double spp = value_at(curve, &CurvePoint::seconds, seconds, &CurvePoint::spp);
     const auto next = std::ranges::find_if(curve, [&](const CurvePoint& p) { return p.spp >= spp; });
     if (next == curve.end()) return {curve.back().error * curve.back().spp / spp, Kind::beyond};
     if (next == curve.begin()) return {curve.front().error, Kind::inside};

@@ -6,7 +6,7 @@
 #include "core/math/srgb.h"
 #include "core/scene/scene_edit.h"
 #include "tests/unit/io/temp_folder.h"
-#include "tests/unit/random_scene.h"
+#include "tests/support/random_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 #include "core/scene/history.h"
 #include "core/scene/scene_diff.h"
 #include "core/scene/validate.h"
-#include "tests/unit/random_scene.h"
+#include "tests/support/random_scene.h"
 
 #include <gmock/gmock.h>
 
