@@ -5,8 +5,8 @@
 #include "core/io/scene_writer.h"
 #include "core/math/srgb.h"
 #include "core/scene/scene_edit.h"
-#include "tests/unit/io/temp_folder.h"
 #include "tests/support/random_scene.h"
+#include "tests/unit/io/temp_folder.h"
 
 #include <gmock/gmock.h>
 
