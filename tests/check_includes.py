@@ -25,7 +25,7 @@ LIBRARIES = {
     r"nlohmann/": ["core/io", "ui", "app", "tests"],
     r"CLI/": ["app", "assets"],
     r"tbb/|oneapi/": ["core/accel", "core/render", "core/io", "tests", "assets"],
-    r"hwy/": ["core/accel", "core/lights", "core/render", "tests"],
+    r"hwy/": ["core/math", "core/accel", "core/lights", "core/render", "tests"],
     r"embree\d/": ["app", "tests"],
 }
 

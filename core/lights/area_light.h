@@ -55,9 +55,10 @@ struct AreaLight {
     /// `u_side` chooses the side of a two-sided light.
     SurfaceSample sample_surface(const Vec2& u, float u_side) const;
 
-private:
-    /// Rounding of a point of the light.
+    /// Bound on the rounding of a point of the light, a component each.
     Vec3 point_error() const;
+
+private:
     std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;
     std::optional<LightSample> sample_flat(const Vec3& p, const Vec2& u) const;
     /// `solid_angle_pdf` 0: the point was drawn by area.

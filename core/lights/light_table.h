@@ -42,6 +42,10 @@ public:
 
     /// The lights but for the environment.
     std::span<const AreaLight> lights() const { return lights_; }
+    /// The light that every sample is drawn from, where there is but one and it is no environment; else null.
+    const AreaLight* only_light() const {
+        return environment_ || !tree_.only_light() ? nullptr : &lights_[*tree_.only_light()];
+    }
     /// Which of `lights` the surface `hit` is, or kNone.
     std::uint32_t light_of(const Hit& hit) const {
         if (hit.object >= first_light_.size() || first_light_[hit.object] == kNone) return kNone;

@@ -28,6 +28,10 @@ public:
 
     /// Whether there is nothing to draw: then `draw` and `probability` must not be called.
     bool empty() const { return light_count_ == 0; }
+    /// The one light with power, where there is only one.
+    std::optional<std::uint32_t> only_light() const {
+        return light_count_ == 1 ? std::optional(only_light_) : std::nullopt;
+    }
     /// `u` in [0, 1). Nothing where no light can reach the receiver.
     std::optional<Draw> draw(const LightReceiver& receiver, float u) const;
     /// The probability with which `draw` draws the light.

@@ -3,8 +3,7 @@
 #include "core/math/vec.h"
 
 #include <bit>
-#include <cmath>
-#include <limits>
+#include <cstdint>
 
 namespace rayuela {
 
@@ -16,12 +15,14 @@ constexpr float gamma(int n) {
     return static_cast<float>(n) * kUnitRoundoff / (1 - static_cast<float>(n) * kUnitRoundoff);
 }
 
+/// The next float above, of x that is no infinity or NaN; past the largest comes infinity.
 inline float next_up(float x) {
-    return std::nextafter(x, std::numeric_limits<float>::infinity());
+    const auto bits = std::bit_cast<std::int32_t>(x + 0.0f);  // + 0.0f: no negative zero
+    return std::bit_cast<float>(bits + (bits >= 0 ? 1 : -1));
 }
 
 inline float next_down(float x) {
-    return std::nextafter(x, -std::numeric_limits<float>::infinity());
+    return -next_up(-x);
 }
 
 /// Origin for a ray leaving `p` towards `w`: moved along the geometric normal `n` (unit) to the side of `w`, just beyond

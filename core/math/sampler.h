@@ -22,6 +22,16 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
+/// The same for 32 bits. Wellons, "Prospecting for Hash Functions", 2018, with the constants of TheIronBorn.
+inline constexpr std::uint32_t kMixFactors[] = {0x21f0aaadu, 0xd35a2d97u};
+constexpr std::uint32_t mix_bits_32(std::uint32_t x) {
+    x ^= x >> 16;
+    x *= kMixFactors[0];
+    x ^= x >> 15;
+    x *= kMixFactors[1];
+    return x ^ (x >> 15);
+}
+
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     x = (x << 16) | (x >> 16);
     x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
@@ -32,12 +42,13 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
 
 /// Owen's nested uniform scrambling in base 2 of a number whose bits are in reverse order (bit 0 is 1/2): a bit is
 /// flipped by a hash of the bits below it. Laine & Karras 2011, with Vegdahl's constants (2021).
+inline constexpr std::uint32_t kOwenFactors[] = {0x3d20adeau, 0x05526c56u, 0x53a22864u};
 constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
-    x ^= x * 0x3d20adeau;
+    x ^= x * kOwenFactors[0];
     x += seed;
     x *= (seed >> 16) | 1;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
+    x ^= x * kOwenFactors[1];
+    x ^= x * kOwenFactors[2];
     return x;
 }
 
@@ -87,6 +98,14 @@ constexpr std::uint32_t sobol_reversed(std::uint32_t index, std::uint32_t dimens
     return x;
 }
 
+/// What sets the hash of a dimension, or of a set of dimensions, apart from those of all others.
+constexpr std::uint32_t dimension_salt(std::uint32_t dimension) {
+    return (dimension + 1) * 0x9e3779b9u;
+}
+constexpr std::uint32_t set_salt(std::uint32_t dimension) {
+    return ~dimension_salt(dimension / kSobolPairs);
+}
+
 /// The largest multiple of 2^-24 below 1 that `bits` / 2^32 reaches; in [0, 1 - 2^-24].
 constexpr float to_unit_float(std::uint32_t bits) {
     return static_cast<float>(bits >> 8) * 0x1p-24f;
@@ -105,44 +124,47 @@ constexpr float to_unit_float(std::uint32_t bits) {
 class Sampler {
 public:
     Sampler() = default;
-    Sampler(SamplerKind kind, std::uint32_t seed, std::uint32_t pixel_index, std::uint32_t sample_index)
-        : key_(mix_bits(mix_bits((std::uint64_t{seed} << 32) | pixel_index) + kGolden)), kind_(kind) {
-        if (kind == SamplerKind::independent) {
-            key_ = mix_bits(key_ + sample_index);
-        } else {
-            reversed_index_ = reverse_bits(sample_index);
-        }
+    Sampler(SamplerKind kind, std::uint32_t seed, std::uint32_t pixel_index, std::uint32_t sample_index) : kind_(kind) {
+        constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+        std::uint64_t key = mix_bits(mix_bits((std::uint64_t{seed} << 32) | pixel_index) + kGolden);
+        if (kind == SamplerKind::independent) key = mix_bits(key + sample_index);
+        key_ = {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
+        reversed_index_ = reverse_bits(sample_index);
     }
 
     float get_1d(std::uint32_t dimension) const {
-        const std::uint64_t hash = mix_bits(key_ + dimension * kGolden);
-        if (kind_ == SamplerKind::independent) return to_unit_float(high_bits(hash));
-        return scrambled(set_index(dimension), 2 * (dimension % kSobolPairs), high_bits(hash));
+        const std::uint32_t hash = hashed(dimension, 0);
+        if (kind_ == SamplerKind::independent) return to_unit_float(hash);
+        return scrambled(set_index(dimension), 2 * (dimension % kSobolPairs), hash);
     }
 
     Vec2 get_2d(std::uint32_t dimension) const {
-        const std::uint64_t hash = mix_bits(key_ + dimension * kGolden);
-        const auto low = static_cast<std::uint32_t>(hash);
-        if (kind_ == SamplerKind::independent) return {to_unit_float(high_bits(hash)), to_unit_float(low)};
+        const std::uint32_t first_hash = hashed(dimension, 0), second_hash = hashed(dimension, 1);
+        if (kind_ == SamplerKind::independent) return {to_unit_float(first_hash), to_unit_float(second_hash)};
         const std::uint32_t index = set_index(dimension), first = 2 * (dimension % kSobolPairs);
-        return {scrambled(index, first, high_bits(hash)), scrambled(index, first + 1, low)};
+        return {scrambled(index, first, first_hash), scrambled(index, first + 1, second_hash)};
     }
 
-private:
-    static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+    /// What a draw is made of, for those who make many at once.
+    SamplerKind kind() const { return kind_; }
+    const std::array<std::uint32_t, 2>& key() const { return key_; }
+    std::uint32_t reversed_index() const { return reversed_index_; }
 
-    static std::uint32_t high_bits(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
+private:
+    std::uint32_t hashed(std::uint32_t dimension, std::size_t half) const {
+        return mix_bits_32(mix_bits_32(key_[half] ^ dimension_salt(dimension)) + key_[1 - half]);
+    }
     static float scrambled(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
         return to_unit_float(reverse_bits(owen_scramble_reversed(sobol_reversed(index, dimension), seed)));
     }
     /// The shuffled index of the set that `dimension` belongs to. What the shuffle makes of index 0 is taken off again: that
     /// is a digital shift, which the scrambling of the result hides, and keeps indices as short as those of the samples.
     std::uint32_t set_index(std::uint32_t dimension) const {
-        const std::uint32_t seed = high_bits(mix_bits(~key_ + dimension / kSobolPairs * kGolden));
+        const std::uint32_t seed = mix_bits_32(mix_bits_32(key_[0] ^ set_salt(dimension)) + key_[1]);
         return reverse_bits(owen_scramble_reversed(reversed_index_, seed) ^ owen_scramble_reversed(0, seed));
     }
 
-    std::uint64_t key_ = 0;  ///< Of seed and pixel; for independent samples of the sample as well.
+    std::array<std::uint32_t, 2> key_{};  ///< Of seed and pixel; for independent samples of the sample as well.
     std::uint32_t reversed_index_ = 0;
     SamplerKind kind_ = SamplerKind::independent;
 };

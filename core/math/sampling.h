@@ -10,14 +10,26 @@
 
 namespace rayuela {
 
+/// Polynomials in z = x^2 for |x| <= pi/4, to the last bit but one: sin(x) = x + x z S(z), cos(x) = 1 - z/2 + z^2 C(z).
+/// Moshier, Cephes Mathematical Library. Highest power first.
+inline constexpr float kSinOctant[] = {-1.9515295891e-4f, 8.3321608736e-3f, -1.6666654611e-1f};
+inline constexpr float kCosOctant[] = {2.443315711809948e-5f, -1.388731625493765e-3f, 4.166664568298827e-2f};
+
+/// (cos x, sin x) for |x| <= pi / 4.
+inline Vec2 cos_sin_octant(float x) {
+    const float z = x * x;
+    const float s = (kSinOctant[0] * z + kSinOctant[1]) * z + kSinOctant[2];
+    const float c = (kCosOctant[0] * z + kCosOctant[1]) * z + kCosOctant[2];
+    return {1 - 0.5f * z + z * z * c, x + x * z * s};
+}
+
 /// Uniform on the unit disk. Shirley & Chiu, "A low distortion map between disk and square", 1997.
 inline Vec2 sample_concentric_disk(const Vec2& u) {
     const float x = 2 * u.x - 1, y = 2 * u.y - 1;
-    if (x == 0 && y == 0) return Vec2(0);
     const bool horizontal = std::abs(x) > std::abs(y);
-    const float r = horizontal ? x : y;
-    const float phi = horizontal ? (kPi / 4) * (y / x) : kPi / 2 - (kPi / 4) * (x / y);
-    return {r * std::cos(phi), r * std::sin(phi)};
+    const float r = horizontal ? x : y, across = horizontal ? y : x;
+    const Vec2 w = r * cos_sin_octant(r == 0 ? 0.0f : (kPi / 4) * (across / r));
+    return horizontal ? w : Vec2(w.y, w.x);
 }
 
 /// Density cos / pi. Malley's method; z > 0 but where u lies on the very edge of the square.

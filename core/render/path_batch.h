@@ -3,6 +3,7 @@
 #include "core/accel/surface_point.h"
 #include "core/lights/light_importance.h"
 #include "core/math/sampler.h"
+#include "core/render/matte.h"
 
 #include <cstdint>
 #include <vector>
@@ -57,6 +58,10 @@ struct PathBatch {
     std::vector<Color> shadow_light;  ///< What arrives when nothing is in the way.
     std::vector<std::uint32_t> shadow_paths;
     std::vector<std::uint8_t> blocked;
+
+    // Paths at surfaces that many are shaded at once, and which of `states` they are.
+    MatteBlock matte{};
+    std::uint32_t matte_states[MatteBlock::kSize];
 
     RayCounts counts;  ///< Of all batches since the worker set them to 0.
 };

@@ -4,8 +4,6 @@
 #include "core/render/aimed_bsdf.h"
 #include "core/render/interaction.h"
 
-#include <algorithm>
-
 namespace rayuela {
 
 namespace {
@@ -66,6 +64,7 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       light_sampling_(options.light_sampling && scene.features().light_sampling()) {
     if (options.light_tracing && options.light_sampling && scene.emission())
         light_tracer_.emplace(scene, camera_, width, height);
+    matte_blocks_ = options.matte_blocks && !light_tracer_;
 }
 
 bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
@@ -136,8 +135,11 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
+        if (matte_blocks_ && material.matte) {
+            if (!last) add_matte(batch, i, *material.matte, bounce);
+            continue;
+        }
         const Interaction at(batch.points[i], material, -ray.direction);
-
         if (material.emissive) batch.radiance[state.path] += emitted_light(state, ray, hit, at);
         if (last) continue;
         // Where a lamp's path cannot be the same as this one, all caustics are left to it.
@@ -150,6 +152,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             scatter(batch, state, ray, at, bsdf, bounce);
         }
     }
+    shade_matte(batch, bounce);
     batch.states.swap(batch.next_states);
     batch.rays.swap(batch.next_rays);
 }
@@ -243,6 +246,17 @@ float PathTracer::light_ratio(const PathState& state, const Ray& ray, const Inte
     if (sample.specular || !at.same_frame(wi)) return 0;
     const float distance = glm::length(at.point.p - ray.origin);
     return at.cosine(wi) / (sample.pdf * light_tracer_->camera_density(at, ray.direction, distance));
+}
+
+MatteTask PathTracer::matte_task(int bounce) const {
+    const bool roulette = options_.russian_roulette && bounce + 1 >= rr_start_;
+    return {.sampler = scene_.scene().render.sampler,
+            .light_dimension = light_dimension(bounce),
+            .direction_dimension = direction_dimension(bounce, light_sampling_),
+            .roulette_dimension = dimension(bounce, kRoulette),
+            .samples_lights = light_sampling_,
+            .mis = options_.mis,
+            .roulette_throughput = roulette ? kRouletteThroughput : 0};
 }
 
 void PathTracer::add_unblocked_light(PathBatch& batch) const {

@@ -20,6 +20,7 @@ struct PathTracerOptions {
     bool mis = true;             ///< Else light that can be sampled counts by its samples alone, after smooth lobes.
     bool russian_roulette = true;
     bool light_tracing = true;  ///< Else caustics are found by camera paths alone, and by chance. Needs light_sampling.
+    bool matte_blocks = true;   ///< Else diffuse surfaces are shaded one by one, with the same result to the last bit.
 };
 
 /// Unidirectional path tracing with light sampling (Kajiya 1986; combined by multiple importance sampling, Veach & Guibas
@@ -58,6 +59,10 @@ private:
                int bounce) const;
     void scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
                  int bounce) const;
+    void add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const;
+    void shade_matte(PathBatch& batch, int bounce) const;
+    MatteTask matte_task(int bounce) const;
+    void sample_lights(MatteBlock& block) const;
     float light_ratio(const PathState& state, const Ray& ray, const Interaction& at, const Vec3& wi,
                       const BsdfSample& sample, int bounce) const;
     float scattering_weight(float bsdf_pdf, float light_pdf) const;
@@ -70,6 +75,7 @@ private:
     int rr_start_;
     bool light_sampling_;
     std::optional<LightTracer> light_tracer_;
+    bool matte_blocks_;
 };
 
 /// Replays one sample of the scene's film: the same stages on a batch of one, the same radiance to the last bit. What the

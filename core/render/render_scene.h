@@ -24,6 +24,7 @@ struct PackedMaterial {
     bool smooth = true;  ///< Light samples can contribute.
     bool transmits = false;
     bool delta = false;  ///< Has a delta lobe.
+    std::optional<Color> matte;  ///< The albedo of a diffuse material that is not textured.
 };
 
 /// What the kernels read, derived from a Scene: flattened objects, packed materials, trees, lights. Immutable; parts that

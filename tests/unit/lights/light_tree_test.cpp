@@ -44,6 +44,7 @@ TEST(LightTree, ProbabilitiesSumToTheChanceOfADraw) {
         const std::vector<AreaLight> lights = random_lights(count);
         const LightTree tree(lights);
         ASSERT_FALSE(tree.empty());
+        double all = 0, lit = 0;
         for (std::uint32_t i = 0; i < 20; ++i) {
             const LightReceiver receiver = random_receiver(i);
             double sum = 0;
@@ -61,8 +62,10 @@ TEST(LightTree, ProbabilitiesSumToTheChanceOfADraw) {
                 found += tree.draw(receiver, Sampler(SamplerKind::sobol, i, 0, k).get_1d(0)).has_value();
             }
             EXPECT_NEAR(sum, found / 4096.0, 2e-3) << count;
-            EXPECT_TRUE(sum == 0 || sum > 0.5) << sum;
+            all += sum;
+            lit += sum > 0 ? 1 : 0;
         }
+        EXPECT_GT(all, 0.75 * lit) << "draws are seldom lost";
     }
 }
 

@@ -1,0 +1,94 @@
+#include "tests/render_testing.h"
+
+#include <gtest/gtest.h>
+
+// Diffuse surfaces shaded many at once and one by one: two programs for the same thing, and every bit must agree.
+
+namespace rayuela {
+namespace {
+
+using namespace rayuela::testing;
+
+struct Case {
+    const char* name;
+    void (*light)(Scene& scene, MaterialId lamp);
+};
+
+const Case kCases[] = {
+    {"sky alone",
+     [](Scene& scene, MaterialId) {
+         scene.environment = GradientEnvironment{Color(0.3f), Color(1)};
+     }},
+    {"quad lamp",
+     [](Scene& scene, MaterialId lamp) {
+         add_object(scene, Quad{Vec3(-1, 4, 1), Vec3(2, 0, 0), Vec3(0, 0, 1)}, lamp);
+     }},
+    {"two-sided quad lamp among the things",
+     [](Scene& scene, MaterialId) {
+         const MaterialId both = add_material(scene, Emitter{{Color(6, 7, 8), nullptr}, true});
+         add_object(scene, Quad{Vec3(-0.5f, 1.2f, 1.4f), Vec3(1, 0, 0.2f), Vec3(0, 0.3f, 0.9f)}, both);
+     }},
+    {"triangle lamp and sky",
+     [](Scene& scene, MaterialId lamp) {
+         scene.environment = ConstantEnvironment{Color(0.2f)};
+         add_object(scene, Triangle{{Vec3(-2, 3, -1), Vec3(0, 3, 1), Vec3(2, 3.5f, -1)}}, lamp);
+     }},
+    {"sphere lamp",
+     [](Scene& scene, MaterialId lamp) {
+         add_object(scene, Sphere{Vec3(0.5f, 2.2f, 0.5f), 0.5f}, lamp);
+     }},
+    {"many lamps",
+     [](Scene& scene, MaterialId lamp) {
+         for (int i = 0; i < 6; ++i) {
+             const auto x = static_cast<float>(i);
+             add_object(scene, Quad{Vec3(x - 3, 3, 1), Vec3(0.5f, 0, 0), Vec3(0, 0, 0.5f)}, lamp);
+             add_object(scene, Sphere{Vec3(3 - x, 2, 2), 0.2f}, lamp);
+         }
+     }},
+};
+
+Scene matte_scene(const Case& lit, SamplerKind sampler) {
+    Scene scene = empty_scene(45, 31);  // Blocks that are not full.
+    scene.camera.position = Vec3(0, 2.5f, 7);
+    scene.camera.target = Vec3(0, 0.8f, 0);
+    scene.environment = ConstantEnvironment{Color(0)};
+    scene.render.max_bounces = 12;
+    scene.render.sampler = sampler;
+    const MaterialId clay = add_material(scene, Diffuse{{Color(0.7f, 0.45f, 0.3f), nullptr}});
+    const MaterialId dark = add_material(scene, Diffuse{{Color(0.05f, 0.2f, 0), nullptr}});
+    const MaterialId black = add_material(scene, Diffuse{{Color(0), nullptr}});
+    const MaterialId gold = add_material(scene, Metal{{Color(0.9f, 0.75f, 0.45f), nullptr}, {0.3f, nullptr, 0}});
+    const MaterialId lamp = add_material(scene, Emitter{.radiance = {Color(8, 7, 6), nullptr}});
+    add_object(scene, Plane{}, clay);
+    add_object(scene, Sphere{Vec3(-1.8f, 0.8f, 0), 0.8f}, dark);
+    add_object(scene, Box{Vec3(1, 0, -0.5f), Vec3(2, 1.2f, 0.5f)}, gold);
+    add_object(scene, Triangle{{Vec3(-3, 0, -2), Vec3(3, 0, -2), Vec3(0, 3, -2.2f)}}, black);
+    Transform raised;
+    raised.translate = Vec3(0, 0.5f, -0.6f);
+    add_object(scene, Mesh{"torus", torus_mesh(10, 6)}, clay, raised);
+    lit.light(scene, lamp);
+    return scene;
+}
+
+class Matte : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Matte, BlocksGiveTheBitsOfSinglePaths) {
+    for (const SamplerKind sampler : {SamplerKind::sobol, SamplerKind::independent}) {
+        const Scene scene = matte_scene(GetParam(), sampler);
+        for (const bool mis : {true, false}) {
+            const auto blocks = render(scene, 5, {.mis = mis});
+            const auto singles = render(scene, 5, {.mis = mis, .matte_blocks = false});
+            EXPECT_EQ(means(blocks->film()), means(singles->film()));
+            EXPECT_GT(estimate(blocks->film()).mean, 0.01);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Matte, ::testing::ValuesIn(kCases), [](const auto& test) {
+    std::string name;
+    for (const char c : std::string(test.param.name)) name += std::isalnum(c) ? c : '_';
+    return name;
+});
+
+}  // namespace
+}  // namespace rayuela
