@@ -3,8 +3,8 @@
 #include "core/accel/traced_object.h"
 #include "core/math/float_error.h"
 
-#include <limits>
 #include <numbers>
+#include <tuple>
 
 namespace rayuela {
 namespace {
@@ -12,28 +12,18 @@ namespace {
 /// Surface in a space in which it is known exactly to double, before it is rounded to world floats.
 struct Surface {
     Vec3d p{0};
-    Vec3d ng{0};  ///< Any length, world space.
-    Vec3d ns{0};  ///< Zero: as ng.
-    Vec2 uv{0};
     double size = 0;  ///< Extent of the numbers that p was made from; its error in double is a fraction of this.
-};
-
-/// Takes normals from the shape's space to the world: the inverse transpose up to a positive factor.
-class NormalTransform {
-public:
-    explicit NormalTransform(const AffineD& to_world) {
-        const glm::dmat3& m = to_world.linear;
-        const double sign = glm::determinant(m) < 0 ? -1 : 1;
-        cofactors_ = sign * glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    }
-    Vec3d operator()(const Vec3d& n) const { return cofactors_ * n; }
-
-private:
-    glm::dmat3 cofactors_;
+    Vec3 ng{0};
+    Vec3 ns{0};  ///< Zero: as ng.
+    Vec2 uv{0};
 };
 
 double max_abs(const Vec3d& v) {
     return glm::max(std::fabs(v.x), glm::max(std::fabs(v.y), std::fabs(v.z)));
+}
+
+Vec3 unit(const Vec3d& v) {
+    return Vec3(glm::normalize(v));
 }
 
 /// How far a point at `p` is kept from the edges of its surface: so far that rounding to float does not take it beyond a
@@ -42,157 +32,324 @@ double margin_at(const Vec3d& p) {
     return 3 * double{kUnitRoundoff} * max_abs(p);
 }
 
-/// Where a hit on (a, b, c), given in world space, lies: towards the centroid by as much as the margin asks for in a triangle
-/// that is not thin.
-Surface on_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, double b1, double b2) {
-    const Vec3d e1 = b - a, e2 = c - a;
-    const double extent = glm::max(max_abs(e1), max_abs(e2));
-    const double inward = glm::min(1.0, 6 * margin_at(a + b1 * e1 + b2 * e2) / extent);
-    Surface surface;
-    surface.p = a + glm::mix(b1, 1.0 / 3, inward) * e1 + glm::mix(b2, 1.0 / 3, inward) * e2;
-    surface.ng = glm::cross(e1, e2);
-    surface.size = max_abs(a) + max_abs(b) + max_abs(c);
-    return surface;
-}
+/// The way from a shape's own space to the world and back. Points and normals of a shape that has been taken to the world
+/// once and for all need no way, and what it is made of is read for texture coordinates alone.
+class Placement {
+public:
+    Placement(const Affine& to_world, bool shape_in_world)
+        : in_world_(shape_in_world), way_(std::make_unique<const Way>(AffineD(to_world))) {}
 
-Surface surface_of(const Sphere& sphere, const GeometryInstance& instance, const Ray& ray, const Hit& hit) {
-    const AffineD to_world(instance.to_world);
-    const auto baked = world_sphere(sphere, instance.to_world);
-    const RayD world(ray);
-    const SphereD local = baked ? *baked : SphereD{Vec3d(sphere.center), sphere.radius};
-    const RayD local_ray = baked ? world : to_world.inverse().ray(world);
-    // Down to the surface from a point close to it: from the centre up, a ground of large radius would lose digits.
-    const Vec3d along = local_ray.at(hit.t);
-    const double distance = glm::length(along - local.center);
-    const Vec3d n = (along - local.center) / distance;
-    const double height = squared_distance_excess(along, local.center, local.radius) / (distance + local.radius);
-    const Vec3d p = along - height * n;
+    bool in_world() const { return in_world_; }
+    const AffineD& to_world() const { return way_->to_world; }
+    const AffineD& to_local() const { return way_->to_local; }
+    RayD ray(const Ray& world) const { return in_world_ ? RayD(world) : to_local().ray(RayD(world)); }
+    Vec3d point(const Vec3d& p) const { return in_world_ ? p : to_world().point(p); }
+    Vec3d normal(const Vec3d& n) const { return in_world_ ? n : way_->normals * n; }
 
-    Surface surface;
-    surface.p = baked ? p : to_world.point(p);
-    surface.ng = baked ? n : NormalTransform(to_world)(n);
-    surface.size = max_abs(surface.p) + (baked ? 0.0 : max_abs(to_world.translation) + max_abs(to_world.vector(p)));
+private:
+    struct Way {
+        AffineD to_world, to_local;
+        glm::dmat3 normals;  ///< The inverse transpose of to_world, up to a positive factor.
 
-    const Vec3d own = baked ? glm::transpose(to_world.linear) * n : n;
-    const Vec3d unit = glm::normalize(own);
-    const double longitude = std::atan2(-unit.z, unit.x) * (0.5 * std::numbers::inv_pi);
-    surface.uv = Vec2(static_cast<float>(longitude < 0 ? longitude + 1 : longitude),
-                      static_cast<float>(std::acos(glm::clamp(unit.y, -1.0, 1.0)) * std::numbers::inv_pi));
-    return surface;
-}
+        explicit Way(const AffineD& affine) : to_world(affine), to_local(affine.inverse()) {
+            const glm::dmat3& m = affine.linear;
+            normals = glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+            if (glm::determinant(m) < 0) normals = -normals;
+        }
+    };
 
-Surface surface_of(const Plane& plane, const GeometryInstance& instance, const Ray& ray, const Hit& hit) {
-    const PlaneD world = world_plane(plane, instance.to_world);
-    const Vec3d n = glm::normalize(world.normal);
-    const Vec3d along = RayD(ray).at(hit.t);
+    bool in_world_;
+    std::unique_ptr<const Way> way_;
+};
 
-    Surface surface;
-    surface.p = along - glm::dot(n, along - world.point) * n;
-    surface.ng = n;
-    surface.size = max_abs(along) + max_abs(world.point);
+struct SphereSurface {
+    Placement placement;
+    SphereD sphere;
 
-    const bool in_world = instance.to_world.is_identity();
-    const Vec3d own =
-        (in_world ? surface.p : AffineD(instance.to_world).inverse().point(surface.p)) - Vec3d(plane.point);
-    const Vec3d own_normal = glm::normalize(Vec3d(plane.normal));
-    const Vec3d axis = std::fabs(own_normal.y) > 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-    const Vec3d s = glm::normalize(axis - glm::dot(axis, own_normal) * own_normal);
-    surface.uv = Vec2(glm::dot(own, s), glm::dot(own, glm::cross(own_normal, s)));
-    return surface;
-}
+    SphereSurface(const Sphere& own, const Affine& to_world)
+        : placement(to_world, world_sphere(own, to_world).has_value()),
+          sphere(world_sphere(own, to_world).value_or(SphereD{Vec3d(own.center), own.radius})) {}
 
-Surface surface_of(const Box& box, const GeometryInstance& instance, const Ray& ray, const Hit& hit) {
-    const AffineD to_world(instance.to_world);
-    const auto baked = world_box(box, instance.to_world);
-    const Box local = baked ? *baked : box;
-    const Vec3d lo(local.min), hi(local.max);
-    const RayD world(ray);
-    const int axis = static_cast<int>(hit.primitive / 2);
-    const bool max_side = hit.primitive % 2 == 1;
+    Surface at(const Ray& ray, const Hit& hit, bool with_uv) const {
+        // Down to the surface from a point close to it: from the centre up, a ground of large radius would lose digits.
+        const Vec3d along = placement.ray(ray).at(hit.t);
+        const double distance = glm::length(along - sphere.center);
+        const Vec3d n = (along - sphere.center) / distance;
+        const double height = squared_distance_excess(along, sphere.center, sphere.radius) / (distance + sphere.radius);
+        const Vec3d p = along - height * n;
 
-    Vec3d p = (baked ? world : to_world.inverse().ray(world)).at(hit.t);
-    const double margin = margin_at(world.at(hit.t));
-    for (int k = 0; k < 3; ++k) {
-        const double scale = baked ? 1.0 : glm::length(to_world.linear[k]);
-        const double inward = glm::min(margin / scale, 0.5 * (hi[k] - lo[k]));
-        p[k] = glm::clamp(p[k], lo[k] + inward, hi[k] - inward);
+        Surface surface;
+        surface.p = placement.point(p);
+        surface.ng = unit(placement.normal(n));
+        surface.size = max_abs(surface.p);
+        if (!placement.in_world())
+            surface.size += max_abs(placement.to_world().translation) + max_abs(placement.to_world().vector(p));
+        if (with_uv) surface.uv = uv(n);
+        return surface;
     }
-    p[axis] = max_side ? hi[axis] : lo[axis];
-    Vec3d n(0);
-    n[axis] = max_side ? 1 : -1;
 
-    Surface surface;
-    surface.p = baked ? p : to_world.point(p);
-    surface.ng = baked ? n : NormalTransform(to_world)(n);
-    surface.size = max_abs(surface.p) + max_abs(to_world.translation) + max_abs(baked ? p : to_world.vector(p));
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const auto across = [&](int k) { return hi[k] > lo[k] ? (p[k] - lo[k]) / (hi[k] - lo[k]) : 0.0; };
-    surface.uv = Vec2(across(a), across(b));
-    return surface;
+    Vec2 uv(const Vec3d& n) const {
+        const Vec3d own = glm::normalize(placement.in_world() ? glm::transpose(placement.to_world().linear) * n : n);
+        const double longitude = std::atan2(-own.z, own.x) * (0.5 * std::numbers::inv_pi);
+        const double polar = std::acos(glm::clamp(own.y, -1.0, 1.0)) * std::numbers::inv_pi;
+        return Vec2(longitude < 0 ? longitude + 1 : longitude, polar);
+    }
+};
+
+struct PlaneSurface {
+    Placement placement;
+    PlaneD plane;  ///< Unit normal.
+    Vec3d own_point, s, t;
+
+    PlaneSurface(const Plane& own, const Affine& to_world)
+        : placement(to_world, to_world.is_identity()), plane(world_plane(own, to_world)), own_point(own.point) {
+        plane.normal = glm::normalize(plane.normal);
+        const Vec3d normal = glm::normalize(Vec3d(own.normal));
+        const Vec3d axis = std::fabs(normal.y) > 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+        s = glm::normalize(axis - glm::dot(axis, normal) * normal);
+        t = glm::cross(normal, s);
+    }
+
+    Surface at(const Ray& ray, const Hit& hit, bool) const {
+        const Vec3d along = RayD(ray).at(hit.t);
+        Surface surface;
+        surface.p = along - glm::dot(plane.normal, along - plane.point) * plane.normal;
+        surface.ng = Vec3(plane.normal);
+        surface.size = max_abs(along) + max_abs(plane.point);
+        const Vec3d own = (placement.in_world() ? surface.p : placement.to_local().point(surface.p)) - own_point;
+        surface.uv = Vec2(glm::dot(own, s), glm::dot(own, t));
+        return surface;
+    }
+};
+
+struct BoxSurface {
+    Placement placement;
+    Vec3d lo, hi;
+    Vec3d scale{1};  ///< A step along an axis of the box is so long in the world.
+
+    BoxSurface(const Box& own, const Affine& to_world) : placement(to_world, world_box(own, to_world).has_value()) {
+        const Box box = world_box(own, to_world).value_or(own);
+        lo = Vec3d(box.min);
+        hi = Vec3d(box.max);
+        if (placement.in_world()) return;
+        for (int axis = 0; axis < 3; ++axis) scale[axis] = glm::length(placement.to_world().linear[axis]);
+    }
+
+    Surface at(const Ray& ray, const Hit& hit, bool) const {
+        const int axis = static_cast<int>(hit.primitive / 2);
+        const bool max_side = hit.primitive % 2 == 1;
+        Vec3d p = placement.ray(ray).at(hit.t);
+        const double margin = margin_at(RayD(ray).at(hit.t));
+        for (int k = 0; k < 3; ++k) {
+            const double inward = glm::min(margin / scale[k], 0.5 * (hi[k] - lo[k]));
+            p[k] = glm::clamp(p[k], lo[k] + inward, hi[k] - inward);
+        }
+        p[axis] = max_side ? hi[axis] : lo[axis];
+        Vec3d n(0);
+        n[axis] = max_side ? 1 : -1;
+
+        Surface surface;
+        surface.p = placement.point(p);
+        surface.ng = unit(placement.normal(n));
+        surface.size = max_abs(surface.p) + max_abs(placement.to_world().translation) +
+                       max_abs(placement.in_world() ? p : placement.to_world().vector(p));
+        const auto across = [&](int k) { return hi[k] > lo[k] ? (p[k] - lo[k]) / (hi[k] - lo[k]) : 0.0; };
+        surface.uv = Vec2(across((axis + 1) % 3), across((axis + 2) % 3));
+        return surface;
+    }
+};
+
+/// A triangle in the world.
+struct Flat {
+    Vec3d a, e1, e2;
+    double extent, size;
+
+    Flat(const Vec3d& corner, const Vec3d& b, const Vec3d& c)
+        : a(corner),
+          e1(b - a),
+          e2(c - a),
+          extent(glm::max(max_abs(e1), max_abs(e2))),
+          size(max_abs(a) + max_abs(b) + max_abs(c)) {}
+
+    /// With positive `sign` counter-clockwise seen from the front.
+    Vec3d normal(double sign) const { return sign * glm::cross(e1, e2); }
+    /// Moved towards the centroid by as much as the margin asks for in a triangle that is not thin.
+    Vec3d point(double b1, double b2) const {
+        const double inward = glm::min(1.0, 6 * margin_at(a + b1 * e1 + b2 * e2) / extent);
+        return a + glm::mix(b1, 1.0 / 3, inward) * e1 + glm::mix(b2, 1.0 / 3, inward) * e2;
+    }
+};
+
+/// Corners are taken to the world, and a transform that mirrors turns them round.
+double front_sign(const Affine& to_world) {
+    return glm::determinant(glm::dmat3(to_world.linear)) < 0 ? -1 : 1;
 }
 
-Vec3d keep_front(const Vec3d& n, const Affine& to_world) {
-    return glm::determinant(glm::dmat3(to_world.linear)) < 0 ? -n : n;
-}
+struct TriangleSurface {
+    Flat flat;
+    Vec3 ng;
 
-Surface surface_of(const Triangle& triangle, const GeometryInstance& instance, const Ray&, const Hit& hit) {
-    const TriangleCorners c = world_triangle(triangle, instance.to_world);
-    Surface surface = on_triangle(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2]), hit.u, hit.v);
-    surface.ng = keep_front(surface.ng, instance.to_world);
-    surface.uv = Vec2(hit.u, hit.v);
-    return surface;
-}
+    TriangleSurface(const TriangleCorners& c, double sign)
+        : flat(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2])), ng(unit(flat.normal(sign))) {}
+    TriangleSurface(const Triangle& own, const Affine& to_world)
+        : TriangleSurface(world_triangle(own, to_world), front_sign(to_world)) {}
+
+    Surface at(const Ray&, const Hit& hit, bool) const {
+        return {.p = flat.point(hit.u, hit.v), .size = flat.size, .ng = ng, .uv = Vec2(hit.u, hit.v)};
+    }
+};
 
 /// The half that was hit decides the plane: rounded corners need not lie in one.
-Surface surface_of(const Quad& quad, const GeometryInstance& instance, const Ray&, const Hit& hit) {
-    const QuadCorners c = world_quad(quad, instance.to_world);
-    const double u = hit.u, v = hit.v;
-    Surface surface = u >= v ? on_triangle(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2]), u - v, v)
-                             : on_triangle(Vec3d(c[0]), Vec3d(c[2]), Vec3d(c[3]), u, v - u);
-    surface.ng = keep_front(surface.ng, instance.to_world);
-    surface.uv = Vec2(hit.u, hit.v);
-    return surface;
-}
+struct QuadSurface {
+    TriangleSurface first, second;
 
-Surface surface_of(const std::shared_ptr<const TriangleMesh>& mesh, const GeometryInstance& instance, const Ray&,
-                   const Hit& hit) {
-    const AffineD to_world(instance.to_world);
-    const glm::uvec3 t = mesh->triangles[hit.primitive];
-    const auto position = [&](std::uint32_t i) { return to_world.point(Vec3d(mesh->positions[i])); };
-    const double b1 = hit.u, b2 = hit.v, b0 = 1 - b1 - b2;
-    Surface surface = on_triangle(position(t.x), position(t.y), position(t.z), b1, b2);
-    surface.size += max_abs(to_world.translation);
-    surface.ng = keep_front(surface.ng, instance.to_world);
-    if (!mesh->normals.empty()) {
-        const auto normal = [&](std::uint32_t i) { return Vec3d(mesh->normals[i]); };
-        surface.ns = NormalTransform(to_world)(b0 * normal(t.x) + b1 * normal(t.y) + b2 * normal(t.z));
+    QuadSurface(const QuadCorners& c, double sign)
+        : first({c[0], c[1], c[2]}, sign), second({c[0], c[2], c[3]}, sign) {}
+    QuadSurface(const Quad& own, const Affine& to_world)
+        : QuadSurface(world_quad(own, to_world), front_sign(to_world)) {}
+
+    Surface at(const Ray&, const Hit& hit, bool) const {
+        const double u = hit.u, v = hit.v;
+        const bool in_first = u >= v;
+        const TriangleSurface& half = in_first ? first : second;
+        return {.p = in_first ? half.flat.point(u - v, v) : half.flat.point(u, v - u),
+                .size = half.flat.size,
+                .ng = half.ng,
+                .uv = Vec2(hit.u, hit.v)};
     }
-    surface.uv = mesh->uvs.empty()
-                     ? Vec2(hit.u, hit.v)
-                     : static_cast<float>(b0) * mesh->uvs[t.x] + hit.u * mesh->uvs[t.y] + hit.v * mesh->uvs[t.z];
-    return surface;
-}
+};
 
-}  // namespace
+struct MeshSurface {
+    Placement placement;
+    std::shared_ptr<const TriangleMesh> mesh;
+    double sign, offset;
 
-SurfacePoint surface_point(std::span<const GeometryInstance> instances, const Ray& ray, const Hit& hit) {
-    const GeometryInstance& instance = instances[hit.object];
-    const Surface surface =
-        std::visit([&](const auto& shape) { return surface_of(shape, instance, ray, hit); }, instance.shape);
+    MeshSurface(std::shared_ptr<const TriangleMesh> own, const Affine& to_world)
+        : placement(to_world, to_world.is_identity()),
+          mesh(std::move(own)),
+          sign(front_sign(to_world)),
+          offset(max_abs(Vec3d(to_world.translation))) {}
 
-    SurfacePoint point;
-    point.p = Vec3(surface.p);
+    Surface at(const Ray&, const Hit& hit, bool with_uv) const {
+        const glm::uvec3 t = mesh->triangles[hit.primitive];
+        const auto corner = [&](std::uint32_t i) { return placement.point(Vec3d(mesh->positions[i])); };
+        const Flat flat(corner(t.x), corner(t.y), corner(t.z));
+        Surface surface{.p = flat.point(hit.u, hit.v), .size = flat.size + offset, .ng = unit(flat.normal(sign))};
+        if (!mesh->normals.empty()) surface.ns = shading_normal(t, hit);
+        if (with_uv) surface.uv = uv(t, hit);
+        return surface;
+    }
+
+    /// Zero where the interpolated normal has no direction.
+    Vec3 shading_normal(const glm::uvec3& t, const Hit& hit) const {
+        const double b1 = hit.u, b2 = hit.v;
+        const auto normal = [&](std::uint32_t i) { return Vec3d(mesh->normals[i]); };
+        const Vec3d n = placement.normal((1 - b1 - b2) * normal(t.x) + b1 * normal(t.y) + b2 * normal(t.z));
+        const double length = glm::length(n);
+        return length > 0 && std::isfinite(length) ? Vec3(n / length) : Vec3(0);
+    }
+    Vec2 uv(const glm::uvec3& t, const Hit& hit) const {
+        if (mesh->uvs.empty()) return {hit.u, hit.v};
+        const auto b0 = static_cast<float>(1 - double{hit.u} - double{hit.v});
+        return b0 * mesh->uvs[t.x] + hit.u * mesh->uvs[t.y] + hit.v * mesh->uvs[t.z];
+    }
+};
+
+template <typename Shape>
+struct SurfaceOf;
+template <>
+struct SurfaceOf<Sphere> {
+    using type = SphereSurface;
+};
+template <>
+struct SurfaceOf<Plane> {
+    using type = PlaneSurface;
+};
+template <>
+struct SurfaceOf<Box> {
+    using type = BoxSurface;
+};
+template <>
+struct SurfaceOf<Triangle> {
+    using type = TriangleSurface;
+};
+template <>
+struct SurfaceOf<Quad> {
+    using type = QuadSurface;
+};
+template <>
+struct SurfaceOf<std::shared_ptr<const TriangleMesh>> {
+    using type = MeshSurface;
+};
+
+template <typename List>
+struct SurfacesOf;
+template <typename... Shapes>
+struct SurfacesOf<std::variant<Shapes...>> {
+    using type = std::tuple<std::vector<typename SurfaceOf<Shapes>::type>...>;
+};
+
+SurfacePoint rounded(const Surface& surface) {
     // Rounding to float, and the rounding of everything in double before it. The smallest term keeps the bound positive
     // where the surface passes through the origin.
     constexpr double kDoubleError = 0x1p-36;
     constexpr double kSmallest = 0x1p-100;
+    SurfacePoint point;
+    point.p = Vec3(surface.p);
     point.p_error =
         Vec3(glm::abs(surface.p) * (1.01 * double{kUnitRoundoff}) + (kDoubleError * surface.size + kSmallest));
-    point.ng = Vec3(glm::normalize(surface.ng));
-    const double ns_length = glm::length(surface.ns);
-    point.ns = ns_length > 0 && std::isfinite(ns_length) ? Vec3(surface.ns / ns_length) : point.ng;
+    point.ng = surface.ng;
+    point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;
     point.uv = surface.uv;
     return point;
+}
+
+}  // namespace
+
+struct Surfaces::Tables {
+    /// Those of each kind of shape side by side.
+    SurfacesOf<TracedShape>::type kinds;
+
+    /// The surface of the kind, one of the alternatives of TracedShape, with the index.
+    template <std::size_t kKind = 0>
+    Surface at(const Entry& entry, const Ray& ray, const Hit& hit, bool with_uv) const {
+        if (entry.kind == kKind) return std::get<kKind>(kinds)[entry.index].at(ray, hit, with_uv);
+        if constexpr (kKind + 1 < std::variant_size_v<TracedShape>) return at<kKind + 1>(entry, ray, hit, with_uv);
+        return {};
+    }
+};
+
+Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::make_unique<Tables>()) {
+    entries_.reserve(instances.size());
+    for (const GeometryInstance& instance : instances) {
+        std::visit(
+            [&]<typename Shape>(const Shape& shape) {
+                auto& table = std::get<std::vector<typename SurfaceOf<Shape>::type>>(tables_->kinds);
+                entries_.push_back(
+                    {static_cast<std::uint32_t>(instance.shape.index()), static_cast<std::uint32_t>(table.size())});
+                table.emplace_back(shape, instance.to_world);
+            },
+            instance.shape);
+    }
+}
+
+Surfaces::~Surfaces() = default;
+
+SurfacePoint Surfaces::point(const Ray& ray, const Hit& hit, bool with_uv) const {
+    return rounded(tables_->at(entries_[hit.object], ray, hit, with_uv));
+}
+
+std::uint64_t Surfaces::memory_bytes() const {
+    const auto bytes = [](const auto&... table) {
+        return (std::uint64_t{0} + ... + (table.capacity() * sizeof(table[0])));
+    };
+    return entries_.capacity() * sizeof(Entry) + std::apply(bytes, tables_->kinds);
+}
+
+SurfacePoint surface_point(std::span<const GeometryInstance> instances, const Ray& ray, const Hit& hit) {
+    Hit only = hit;
+    only.object = 0;
+    return Surfaces(instances.subspan(hit.object, 1)).point(ray, only);
 }
 
 }  // namespace rayuela

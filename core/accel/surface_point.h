@@ -2,7 +2,9 @@
 
 #include "core/accel/accelerator.h"
 
+#include <memory>
 #include <span>
+#include <vector>
 
 namespace rayuela {
 
@@ -10,18 +12,42 @@ namespace rayuela {
 struct SurfacePoint {
     Vec3 p{0};        ///< On the surface, independent of the rounding of Hit::t.
     Vec3 p_error{0};  ///< Absolute bound per component on the distance of p to the true surface; positive.
-    Vec3 ng{0};       ///< Unit geometric normal of the front, see `surface_point`.
+    Vec3 ng{0};       ///< Unit geometric normal of the front, see `Surfaces`.
     Vec3 ns{0};       ///< Unit shading normal: interpolated where a mesh has normals, else ng.
-    Vec2 uv{0};       ///< See `surface_point`.
+    Vec2 uv{0};       ///< See `Surfaces`.
 };
 
-/// Derives the surface from a valid `hit` of `ray` with `instances`. Nothing here depends on the acceleration structure.
+/// The surfaces of a scene's instances, for the points where they were hit. Immutable.
+///
 /// The front is the outside of a sphere or box, the side the normal of a plane points to, the side from which a
 /// triangle runs counter-clockwise and the side of u x v of a quad. Normals follow the inverse transpose, so that a
 /// mirroring transform keeps the front where it was on the object (as glTF demands).
 /// uv: texture coordinates of a mesh that has them, else barycentrics b1, b2; quad: along u and v; sphere: longitude from
 /// +x towards -z over 2 pi and polar angle from +y over pi; box: position across the face in [0, 1]; plane: distances
 /// along two tangents of unit length, in the plane's own space.
+class Surfaces {
+public:
+    explicit Surfaces(std::span<const GeometryInstance> instances);
+    ~Surfaces();
+    Surfaces(const Surfaces&) = delete;
+    Surfaces& operator=(const Surfaces&) = delete;
+
+    /// Derives the surface from a valid `hit` of `ray` with the instances. Nothing here depends on the acceleration
+    /// structure. uv may be left at 0 where nobody asks for it.
+    SurfacePoint point(const Ray& ray, const Hit& hit, bool with_uv = true) const;
+    std::uint64_t memory_bytes() const;
+
+private:
+    struct Tables;
+    /// Where in the tables an instance is.
+    struct Entry {
+        std::uint32_t kind, index;
+    };
+    std::vector<Entry> entries_;
+    std::unique_ptr<Tables> tables_;
+};
+
+/// The same for a single hit.
 SurfacePoint surface_point(std::span<const GeometryInstance> instances, const Ray& ray, const Hit& hit);
 
 }  // namespace rayuela

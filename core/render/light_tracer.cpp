@@ -94,7 +94,6 @@ void LightTracer::emit(std::uint32_t first, std::uint32_t count, std::uint32_t r
 }
 
 void LightTracer::shade(LightBatch& batch, int depth) const {
-    const std::span<const GeometryInstance> instances = scene_.accelerator().instances();
     batch.shadow_rays.clear();
     batch.connections.clear();
     std::size_t kept = 0;
@@ -103,8 +102,9 @@ void LightTracer::shade(LightBatch& batch, int depth) const {
         if (!hit.valid()) continue;
         LightBatch::State state = batch.states[i];
         Ray ray = batch.rays[i];
-        const SurfacePoint point = surface_point(instances, ray, hit);
-        const Interaction at(point, scene_.packed_material(hit.object), -ray.direction);
+        const PackedMaterial& material = scene_.packed_material(hit.object);
+        const SurfacePoint point = scene_.surfaces().point(ray, hit, material.textured);
+        const Interaction at(point, material, -ray.direction);
         if (depth > 0 && at.material.smooth) connect(batch, state, at, depth);
         if (depth + 1 < scene_.scene().render.max_bounces && scatter(batch, state, ray, at, depth)) {
             batch.states[kept] = state;

@@ -111,10 +111,11 @@ void PathTracer::intersect(PathBatch& batch) const {
 }
 
 void PathTracer::surface_interactions(PathBatch& batch) const {
-    const std::span<const GeometryInstance> instances = scene_.accelerator().instances();
     batch.points.resize(batch.rays.size());
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-        if (batch.hits[i].valid()) batch.points[i] = surface_point(instances, batch.rays[i], batch.hits[i]);
+        const Hit& hit = batch.hits[i];
+        if (!hit.valid()) continue;
+        batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, scene_.packed_material(hit.object).textured);
     }
 }
 

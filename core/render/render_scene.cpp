@@ -172,6 +172,8 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
             next->accelerator_ = Accelerator::build(std::move(instances), next->scene_->render.accel,
                                                     previous ? &previous->accelerator() : nullptr, control);
             if (!next->accelerator_) return nullptr;
+            if (!previous || changes.geometry)
+                next->surfaces_ = std::make_shared<const Surfaces>(next->accelerator_->instances());
         }
     }
     if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);
@@ -214,8 +216,8 @@ Features RenderScene::find_features() const {
 }
 
 std::uint64_t RenderScene::memory_bytes() const {
-    std::uint64_t total =
-        accelerator_->stats().memory_bytes + lights_->memory_bytes() + (emission_ ? emission_->memory_bytes() : 0);
+    std::uint64_t total = accelerator_->stats().memory_bytes + surfaces_->memory_bytes() + lights_->memory_bytes() +
+                          (emission_ ? emission_->memory_bytes() : 0);
     std::unordered_set<const void*> seen;
     const auto add = [&](const auto& data) {
         if (seen.insert(&data).second) total += bytes(data);

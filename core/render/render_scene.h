@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/accel/accelerator.h"
+#include "core/accel/surface_point.h"
 #include "core/lights/environment_light.h"
 #include "core/lights/light_emission.h"
 #include "core/lights/light_table.h"
@@ -23,7 +24,7 @@ struct PackedMaterial {
     bool emissive = false;
     bool smooth = true;  ///< Light samples can contribute.
     bool transmits = false;
-    bool delta = false;  ///< Has a delta lobe.
+    bool delta = false;          ///< Has a delta lobe.
     std::optional<Color> matte;  ///< The albedo of a diffuse material that is not textured.
 };
 
@@ -44,6 +45,7 @@ public:
     const std::shared_ptr<const Scene>& shared_scene() const { return scene_; }
     const Features& features() const { return features_; }
     const Accelerator& accelerator() const { return *accelerator_; }
+    const Surfaces& surfaces() const { return *surfaces_; }
     const LightTable& lights() const { return *lights_; }
     /// Rays from the lamps towards mirrors and glass; null where there are none of either.
     const LightEmission* emission() const { return emission_.get(); }
@@ -74,6 +76,7 @@ private:
     std::shared_ptr<const FlatObjects> objects_;
     std::shared_ptr<const PackedMaterials> materials_;  ///< The default material, then the scene's.
     std::shared_ptr<const Accelerator> accelerator_;
+    std::shared_ptr<const Surfaces> surfaces_;
     std::shared_ptr<const LightTable> lights_;
     std::shared_ptr<const LightEmission> emission_;
     EnvironmentLight environment_;
