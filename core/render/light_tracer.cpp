@@ -77,6 +77,7 @@ bool LightTracer::trace(std::uint32_t first, std::uint32_t count, std::uint32_t 
 
 void LightTracer::emit(std::uint32_t first, std::uint32_t count, std::uint32_t round, LightBatch& batch) const {
     const RenderSettings& settings = scene_.scene().render;
+    batch.counts.lamp_paths += count;
     batch.samplers.resize(count);
     batch.states.clear();
     batch.rays.clear();

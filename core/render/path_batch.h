@@ -28,11 +28,17 @@ struct PathState {
 
 struct RayCounts {
     std::uint64_t paths = 0, rays = 0, shadow_rays = 0;
+    std::uint64_t lamp_paths = 0;           ///< See LightTracer.
+    std::uint64_t environment_lookups = 0;  ///< By rays that have left the scene.
+    std::uint64_t textured_hits = 0;        ///< At which a material had to be worked out anew.
 
     RayCounts& operator+=(const RayCounts& other) {
         paths += other.paths;
         rays += other.rays;
         shadow_rays += other.shadow_rays;
+        lamp_paths += other.lamp_paths;
+        environment_lookups += other.environment_lookups;
+        textured_hits += other.textured_hits;
         return *this;
     }
 };

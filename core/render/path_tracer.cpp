@@ -132,7 +132,9 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         const Hit& hit = batch.hits[i];
         if (bounce == 0) batch.first_object[state.path] = hit.object;
         if (!hit.valid()) {
-            if (scene_.features().environment) batch.radiance[state.path] += environment_light(state, ray.direction);
+            if (!scene_.features().environment) continue;
+            ++batch.counts.environment_lookups;
+            batch.radiance[state.path] += environment_light(state, ray.direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
@@ -141,6 +143,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             continue;
         }
         const Interaction at(batch.points[i], material, -ray.direction);
+        batch.counts.textured_hits += material.textured;
         if (material.emissive) batch.radiance[state.path] += emitted_light(state, ray, hit, at);
         if (last) continue;
         // Where a lamp's path cannot be the same as this one, all caustics are left to it.

@@ -78,8 +78,7 @@ std::optional<Ball> ball_around(const GeometryInstance& instance) {
 }
 
 std::uint64_t bytes(const TriangleMesh& mesh) {
-    return mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3) + mesh.uvs.size() * sizeof(Vec2) +
-           mesh.triangles.size() * sizeof(glm::uvec3);
+    return mesh.memory_bytes();
 }
 
 std::uint64_t bytes(const Image& image) {

@@ -16,6 +16,11 @@ struct TriangleMesh {
     std::vector<Vec2> uvs;              ///< One a position, or empty.
     std::vector<glm::uvec3> triangles;  ///< Indices < positions.size(); degenerate triangles are allowed.
     Bounds3 bounds;                     ///< Of the positions.
+
+    std::uint64_t memory_bytes() const {
+        return positions.size() * sizeof(Vec3) + normals.size() * sizeof(Vec3) + uvs.size() * sizeof(Vec2) +
+               triangles.size() * sizeof(glm::uvec3);
+    }
 };
 
 /// A mesh from a file. `data` is filled when the file is read and is what decides equality.

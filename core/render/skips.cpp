@@ -1,0 +1,251 @@
+#include "core/render/skips.h"
+
+#include "core/accel/kd_accelerator.h"
+#include "core/render/render_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace rayuela {
+
+namespace {
+
+/// Of what every scene asks for that has no reason to do without.
+SkipState skipped_if(bool condition) {
+    return condition ? SkipState::skipped : SkipState::needed;
+}
+
+/// Of what is always left out where there is some.
+SkipState skipped_where(bool present) {
+    return present ? SkipState::skipped : SkipState::absent;
+}
+
+std::string count_of(std::uint64_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+Skip shadow_rays(const RenderScene& scene) {
+    const Features& features = scene.features();
+    const bool active = !features.light_sampling();
+    return {.name = "Shadow rays",
+            .state = skipped_if(active),
+            .why = !active ? count_of(scene.lights().size(), "light") + " to aim at."
+                   : !features.lights
+                       ? "There is neither a lamp nor a panorama to aim at."
+                       : "All surfaces are mirrors, clear glass or lamps: only scattered rays find light.",
+            .counter = [](const RenderStatistics& s) { return s.shadow_rays; },
+            .counted = "shadow rays"};
+}
+
+Skip light_samples_on_mirrors(const RenderScene& scene) {
+    std::uint64_t mirrors = 0;
+    const std::size_t objects = scene.accelerator().instances().size();
+    for (std::uint32_t i = 0; i < objects; ++i) mirrors += !scene.packed_material(i).smooth;
+    const bool sampling = scene.features().light_sampling();
+    return {.name = "Light samples on mirrors",
+            .state = skipped_where(sampling && mirrors > 0),
+            .why = !sampling     ? "No surface samples lights."
+                   : mirrors > 0 ? "Mirrors, clear glass and lamps reflect nothing of them."
+                                 : "No surface is a mirror, clear glass or a lamp.",
+            .saved = sampling ? mirrors : 0,
+            .unit = "objects"};
+}
+
+Skip light_samples_of_the_sky(const RenderScene& scene) {
+    const bool shines = scene.features().environment, panorama = scene.environment().image() != nullptr;
+    return {.name = "Light samples of the sky",
+            .state = skipped_if(!panorama),
+            .why = panorama ? "A panorama has bright spots to aim at."
+                   : shines ? "Scattered rays find a sky without bright spots with less noise."
+                            : "There is no light from outside."};
+}
+
+Skip choice_among_lights(const RenderScene& scene) {
+    const std::size_t lamps = scene.lights().lights().size();
+    return {.name = "Choice among lamps",
+            .state = skipped_if(lamps <= 1),
+            .why = lamps == 0   ? "No lamp can be sampled: there is not even a list of them."
+                   : lamps == 1 ? "There is only one lamp."
+                                : count_of(lamps, "surface") + " of lamps stand in a tree."};
+}
+
+Skip paths_from_lamps(const RenderScene& scene) {
+    const Features& features = scene.features();
+    const bool active = scene.emission() == nullptr;
+    return {.name = "Paths from lamps",
+            .state = skipped_if(active),
+            .why = !active              ? "Lamps shine on mirrors or glass, which throws caustics."
+                   : !features.emitters ? "There is no lamp."
+                   : !features.light_sampling()
+                       ? "No surface would show a caustic of a lamp."
+                       : "No lamp shines on a mirror or on clear glass: there are no caustics.",
+            .counter = [](const RenderStatistics& s) { return s.lamp_paths; },
+            .counted = "lamp paths"};
+}
+
+Skip bounces(const RenderScene& scene) {
+    const bool active = !scene.features().any_light();
+    return {.name = "Bounces",
+            .state = skipped_if(active),
+            .why = active ? "Nothing gives light: paths end where they hit something." : "There is light to find.",
+            .counter = [](const RenderStatistics& s) { return s.rays - std::min(s.rays, s.samples); },
+            .counted = "scattered rays"};
+}
+
+Skip environment(const RenderScene& scene) {
+    const bool active = !scene.features().environment;
+    return {.name = "Environment",
+            .state = skipped_if(active),
+            .why = active ? "No light comes from outside: a ray that leaves ends." : "Light comes from outside.",
+            .counter = [](const RenderStatistics& s) { return s.environment_lookups; },
+            .counted = "look-ups"};
+}
+
+Skip lens_samples(const RenderScene& scene) {
+    const bool active = !scene.features().lens;
+    return {.name = "Lens samples",
+            .state = skipped_if(active),
+            .why = active ? "The lens is a point: everything is in focus." : "The lens has an extent."};
+}
+
+Skip textures(const RenderScene& scene) {
+    const bool active = !scene.features().textures;
+    return {.name = "Textures",
+            .state = skipped_if(active),
+            .why = active ? "No material varies over a surface: each is worked out once, not at every hit."
+                          : "A material varies over its surface.",
+            .counter = [](const RenderStatistics& s) { return s.textured_hits; },
+            .counted = "textured hits"};
+}
+
+/// Objects that have a place in a tree.
+std::uint64_t bounded_objects(const RenderScene& scene) {
+    const auto is_plane = [](const GeometryInstance& i) { return std::holds_alternative<Plane>(i.shape); };
+    const std::span<const GeometryInstance> instances = scene.accelerator().instances();
+    return instances.size() - static_cast<std::uint64_t>(std::ranges::count_if(instances, is_plane));
+}
+
+const TriangleMesh* mesh_of(const GeometryInstance& instance) {
+    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape);
+    return mesh ? mesh->get() : nullptr;
+}
+
+Skip tree_over_objects(const RenderScene& scene) {
+    const std::uint64_t objects = bounded_objects(scene);
+    const bool list = scene.accelerator().settings().kind == AcceleratorKind::list;
+    return {.name = "Tree over the objects",
+            .state = skipped_if(list || objects <= 1),
+            .why = list           ? "Every object is tried in turn, as the settings say."
+                   : objects > 1  ? count_of(objects, "object") + " stand in it."
+                   : objects == 1 ? "There is one object: rays go straight to it."
+                                  : "There is no object that a tree could hold."};
+}
+
+Skip cells_of_trees(const RenderScene& scene) {
+    const AccelStats stats = scene.accelerator().stats();
+    const bool active = stats.nodes == stats.leaves;
+    return {.name = "Cells of trees",
+            .state = skipped_if(active),
+            .why = active ? "All that there is fits into one leaf, or is tried in turn." : "Leaves have to be found.",
+            .counter = [](const RenderStatistics& s) { return s.accel.nodes - s.accel.leaves; },
+            .counted = "inner nodes"};
+}
+
+Skip hidden_objects(const RenderScene& scene) {
+    std::unordered_set<ObjectId> hidden_lists;
+    std::uint64_t hidden = 0;
+    for (const Object& object : scene.scene().objects) {
+        if (object.visible && !hidden_lists.contains(object.parent)) continue;
+        if (std::holds_alternative<ObjectList>(object.shape)) {
+            hidden_lists.insert(object.id);
+        } else {
+            ++hidden;
+        }
+    }
+    return {.name = "Hidden objects",
+            .state = skipped_where(hidden > 0),
+            .why = hidden > 0 ? "They are in no tree and in no list of lights." : "Everything is visible.",
+            .saved = hidden,
+            .unit = "objects"};
+}
+
+/// What meshes would take if each object had one of its own: their geometry shared with the scene, their trees among
+/// instances.
+std::vector<Skip> copies_of_meshes(const RenderScene& scene) {
+    const auto* kd = dynamic_cast<const KdAccelerator*>(&scene.accelerator());
+    const std::span<const GeometryInstance> instances = scene.accelerator().instances();
+    std::unordered_set<const TriangleMesh*> seen;
+    std::uint64_t geometry = 0, trees = 0, repeated = 0;
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        const TriangleMesh* mesh = mesh_of(instances[i]);
+        if (!mesh) continue;
+        geometry += mesh->memory_bytes();
+        if (seen.insert(mesh).second) continue;
+        ++repeated;
+        if (kd) trees += kd->mesh_tree(i)->stats.memory_bytes;
+    }
+    const bool meshes = !seen.empty();
+    return {{.name = "Copies of meshes",
+             .state = skipped_where(meshes),
+             .why = meshes ? "The renderer reads the very meshes that the scene holds." : "There is no mesh.",
+             .saved = geometry,
+             .unit = "bytes"},
+            {.name = "Trees of instances",
+             .state = skipped_where(repeated > 0),
+             .why = repeated > 0 ? fmt::format("{} of the same mesh share its tree.", count_of(repeated, "more object"))
+                    : meshes     ? "No two objects share a mesh."
+                                 : "There is no mesh.",
+             .saved = trees,
+             .unit = "bytes"}};
+}
+
+template <typename Attribute>
+Skip attribute_of_vertices(const RenderScene& scene, std::string_view name,
+                           std::vector<Attribute> TriangleMesh::*member, std::string_view without) {
+    std::unordered_set<const TriangleMesh*> seen;
+    std::uint64_t bytes = 0;
+    for (const GeometryInstance& instance : scene.accelerator().instances()) {
+        const TriangleMesh* mesh = mesh_of(instance);
+        if (mesh && seen.insert(mesh).second && (mesh->*member).empty())
+            bytes += mesh->positions.size() * sizeof(Attribute);
+    }
+    return {.name = name,
+            .state = seen.empty() ? SkipState::absent : skipped_if(bytes > 0),
+            .why = bytes > 0      ? std::string(without)
+                   : seen.empty() ? "There is no mesh."
+                                  : "All meshes bring them.",
+            .saved = bytes,
+            .unit = "bytes"};
+}
+
+}  // namespace
+
+std::string_view name_of(SkipState state) {
+    constexpr std::string_view kNames[] = {"skipped", "needed", "absent"};
+    return kNames[static_cast<std::size_t>(state)];
+}
+
+std::vector<Skip> skips_of(const RenderScene& scene) {
+    std::vector<Skip> skips{shadow_rays(scene),
+                            light_samples_on_mirrors(scene),
+                            light_samples_of_the_sky(scene),
+                            choice_among_lights(scene),
+                            paths_from_lamps(scene),
+                            bounces(scene),
+                            environment(scene),
+                            lens_samples(scene),
+                            textures(scene),
+                            tree_over_objects(scene),
+                            cells_of_trees(scene),
+                            hidden_objects(scene)};
+    std::ranges::move(copies_of_meshes(scene), std::back_inserter(skips));
+    skips.push_back(attribute_of_vertices(scene, "Normals of vertices", &TriangleMesh::normals,
+                                          "Meshes without them store none and are flat."));
+    skips.push_back(attribute_of_vertices(scene, "Texture coordinates of vertices", &TriangleMesh::uvs,
+                                          "Meshes without them store none."));
+    return skips;
+}
+
+}  // namespace rayuela

@@ -1,0 +1,168 @@
+#include "core/render/skips.h"
+
+#include "core/render/render_session.h"
+#include "tests/render_testing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace rayuela {
+namespace {
+
+using namespace rayuela::testing;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Not;
+
+std::shared_ptr<const Frame> glance_at(Scene scene) {
+    scene.render.max_samples = 2;
+    RenderSession session({.threads = 2, .interactive = false});
+    session.submit(std::make_shared<const Scene>(std::move(scene)));
+    return session.wait({});
+}
+
+/// Names of what a render of the scene skips. Whatever is skipped has been done not once.
+std::vector<std::string_view> skipped_in(const Scene& scene) {
+    const auto frame = glance_at(scene);
+    std::vector<std::string_view> names;
+    for (const Skip& skip : skips_of(*frame->render_scene)) {
+        EXPECT_FALSE(skip.why.empty()) << skip.name;
+        EXPECT_TRUE(skip.state == SkipState::skipped || skip.saved == 0) << skip.name;
+        if (skip.state != SkipState::skipped) continue;
+        names.push_back(skip.name);
+        EXPECT_EQ(skip.counter ? skip.counter(frame->statistics) : 0, 0u) << skip.name;
+    }
+    return names;
+}
+
+Skip skip_of(const Scene& scene, std::string_view name) {
+    const std::vector<Skip> skips = skips_of(*make_render_scene(scene));
+    const auto found = std::ranges::find(skips, name, &Skip::name);
+    return found == skips.end() ? ADD_FAILURE() << name, Skip{} : *found;
+}
+
+/// A ball of the material on a floor of the other under a lamp.
+Scene lit_ball(const Material& ball, const Material& floor = Diffuse{}) {
+    Scene scene = empty_scene(32, 32);
+    scene.camera.position = Vec3(0, 2, 6);
+    scene.camera.target = Vec3(0, 1, 0);
+    add_object(scene, Plane{}, add_material(scene, floor));
+    add_object(scene, Sphere{Vec3(0, 1, 0), 1}, add_material(scene, ball));
+    add_object(scene, Sphere{Vec3(1, 4, 1), 0.5f}, add_material(scene, Emitter{}));
+    scene.environment = NoEnvironment{};
+    return scene;
+}
+
+TEST(Skips, CountersOfWhatIsNeededAreNotZero) {
+    Scene scene = mixed_scene(64, 36);
+    scene.render.accel.leaf_size = 1;
+    auto image = std::make_shared<Image>(Image{1, 1, {Vec4(0.5f)}, "grey"});
+    std::get<Diffuse>(scene.materials[0].material).albedo.texture = image;
+    const auto frame = glance_at(scene);
+    for (const Skip& skip : skips_of(*frame->render_scene)) {
+        if (!skip.counter) continue;
+        EXPECT_EQ(skip.state, SkipState::needed) << skip.name;
+        EXPECT_GT(skip.counter(frame->statistics), 0u) << skip.name;
+    }
+}
+
+TEST(Skips, NoLightNoSearchForIt) {
+    Scene scene = lit_ball(Diffuse{});
+    scene.objects.pop_back();
+    EXPECT_THAT(skipped_in(scene), AllOf(Contains("Shadow rays"), Contains("Bounces"), Contains("Environment"),
+                                         Contains("Choice among lamps"), Contains("Paths from lamps")));
+    EXPECT_EQ(make_render_scene(scene)->lights().memory_bytes(), 0u);
+    EXPECT_EQ(make_render_scene(scene)->emission(), nullptr);
+}
+
+TEST(Skips, AnEvenSkyNeedsNoShadowRays) {
+    Scene scene = lit_ball(Diffuse{});
+    scene.objects.pop_back();
+    for (const Environment& sky : {Environment(ConstantEnvironment{}), Environment(GradientEnvironment{})}) {
+        scene.environment = sky;
+        EXPECT_THAT(skipped_in(scene), AllOf(Contains("Shadow rays"), Contains("Light samples of the sky"),
+                                             Not(Contains("Bounces")), Not(Contains("Environment"))));
+        EXPECT_EQ(make_render_scene(scene)->lights().memory_bytes(), 0u);
+    }
+    scene.environment = ImageEnvironment{"sky", std::make_shared<Image>(Image{1, 1, {Vec4(1)}, "sky"})};
+    EXPECT_THAT(skipped_in(scene), AllOf(Not(Contains("Shadow rays")), Not(Contains("Light samples of the sky"))));
+}
+
+TEST(Skips, MirrorsAloneNeedNoShadowRays) {
+    const std::vector<std::string_view> mirrors = skipped_in(lit_ball(Metal{}, Dielectric{}));
+    EXPECT_THAT(mirrors, AllOf(Contains("Shadow rays"), Contains("Paths from lamps"), Not(Contains("Bounces"))));
+    const std::vector<std::string_view> mirror_on_floor = skipped_in(lit_ball(Metal{}));
+    EXPECT_THAT(mirror_on_floor, AllOf(Not(Contains("Shadow rays")), Not(Contains("Paths from lamps"))));
+    EXPECT_EQ(skip_of(lit_ball(Metal{}), "Light samples on mirrors").saved, 2u) << "the ball and the lamp";
+}
+
+TEST(Skips, NoPathsFromLampsWithoutCaustics) {
+    EXPECT_THAT(skipped_in(lit_ball(Diffuse{})), AllOf(Contains("Paths from lamps"), Not(Contains("Shadow rays"))));
+}
+
+TEST(Skips, TexturesAreCountedWhereTheyAreSeen) {
+    EXPECT_THAT(skipped_in(lit_ball(Diffuse{})), Contains("Textures"));
+    Scene scene = lit_ball(Diffuse{{Color(1), std::make_shared<Image>(Image{1, 1, {Vec4(1)}, "white"})}});
+    EXPECT_THAT(skipped_in(scene), Not(Contains("Textures")));
+    scene.objects[1].visible = false;
+    EXPECT_THAT(skipped_in(scene), Contains("Textures")) << "only a hidden object has one";
+}
+
+TEST(Skips, OneObjectNeedsNoTree) {
+    Scene scene = lit_ball(Diffuse{});
+    EXPECT_THAT(skipped_in(scene), AllOf(Contains("Cells of trees"), Not(Contains("Tree over the objects"))));
+    scene.objects.pop_back();
+    EXPECT_THAT(skipped_in(scene), Contains("Tree over the objects")) << "a ball, for planes stand in no tree";
+    scene.render.accel.leaf_size = 1;
+    add_object(scene, Sphere{Vec3(3, 1, 0), 1});
+    add_object(scene, Mesh{"torus", torus_mesh()});
+    EXPECT_THAT(skipped_in(scene), AllOf(Not(Contains("Cells of trees")), Not(Contains("Tree over the objects"))));
+    scene.render.accel.kind = AcceleratorKind::list;
+    EXPECT_THAT(skipped_in(scene), AllOf(Contains("Cells of trees"), Contains("Tree over the objects")));
+}
+
+TEST(Skips, HiddenObjectsAreInNoTreeAndNoListOfLights) {
+    Scene scene = lit_ball(Metal{});
+    EXPECT_EQ(skip_of(scene, "Hidden objects").state, SkipState::absent);
+    const ObjectId list = add_object(scene, ObjectList{});
+    add_object(scene, Mesh{"torus", torus_mesh()}, scene.materials.back().id);
+    scene.objects.back().parent = list;
+    scene.objects[2].visible = scene.objects[3].visible = false;  // The lamp and the list.
+    EXPECT_EQ(skip_of(scene, "Hidden objects").saved, 2u) << "the lamp and the list's member";
+    const auto built = make_render_scene(scene);
+    EXPECT_EQ(built->accelerator().instances().size(), 2u);
+    EXPECT_EQ(built->accelerator().stats().primitives, 2u);
+    EXPECT_TRUE(built->lights().empty());
+    EXPECT_EQ(built->lights().memory_bytes(), 0u);
+}
+
+TEST(Skips, InstancesShareMeshAndTree) {
+    Scene scene = lit_ball(Diffuse{});
+    const auto torus = torus_mesh();
+    const std::uint64_t bytes = torus->positions.size() * 24 + torus->triangles.size() * 12;
+    add_object(scene, Mesh{"torus", torus});
+    EXPECT_EQ(skip_of(scene, "Copies of meshes").saved, bytes);
+    EXPECT_EQ(skip_of(scene, "Trees of instances").state, SkipState::absent);
+    const std::uint64_t one_tree = make_render_scene(scene)->accelerator().stats().memory_bytes;
+    add_object(scene, Mesh{"torus", torus}, {}, {.translate = Vec3(5)});
+    add_object(scene, Mesh{"torus", torus}, {}, {.translate = Vec3(-5)});
+    EXPECT_EQ(skip_of(scene, "Copies of meshes").saved, 3 * bytes);
+    const std::uint64_t saved = skip_of(scene, "Trees of instances").saved;
+    const std::uint64_t added = make_render_scene(scene)->accelerator().stats().memory_bytes - one_tree;
+    EXPECT_GT(saved, 2 * 40 * torus->triangles.size()) << "twice ten floats a triangle at least";
+    EXPECT_LT(added, saved / 10);
+}
+
+TEST(Skips, AttributesThatAMeshLacksTakeNoMemory) {
+    Scene scene = lit_ball(Diffuse{});
+    EXPECT_EQ(skip_of(scene, "Texture coordinates of vertices").state, SkipState::absent) << "no mesh";
+    const auto torus = torus_mesh();
+    add_object(scene, Mesh{"torus", torus});
+    EXPECT_EQ(skip_of(scene, "Texture coordinates of vertices").saved, torus->positions.size() * 8);
+    EXPECT_EQ(skip_of(scene, "Normals of vertices").state, SkipState::needed);
+}
+
+}  // namespace
+}  // namespace rayuela
