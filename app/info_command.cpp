@@ -1,8 +1,13 @@
 #include "app/subcommands.h"
+#include "app/text_table.h"
 #include "core/render/render_scene.h"
+#include "core/render/render_session.h"
+#include "core/render/skips.h"
+#include "ui/number_text.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -56,11 +61,60 @@ void print(const nlohmann::ordered_json& info, int indent = 0) {
     }
 }
 
+/// One sample of each pixel of a small image, to have something to count.
+std::shared_ptr<const Frame> glance_at(Scene scene) {
+    constexpr int kSide = 96;
+    const int longest = std::max(scene.film.width, scene.film.height);
+    const auto shrunk = [&](int side) { return std::max(1, side * std::min(kSide, longest) / longest); };
+    scene.film.width = shrunk(scene.film.width);
+    scene.film.height = shrunk(scene.film.height);
+    scene.render.max_samples = 1;
+    scene.render.max_seconds = 0;
+    RenderSession session({.interactive = false});
+    session.submit(std::make_shared<const Scene>(std::move(scene)));
+    return session.wait({});
+}
+
+nlohmann::ordered_json describe(const std::vector<Skip>& skips, const RenderStatistics& statistics) {
+    auto list = nlohmann::ordered_json::array();
+    for (const Skip& skip : skips) {
+        nlohmann::ordered_json entry = {{"name", skip.name}, {"state", name_of(skip.state)}, {"why", skip.why}};
+        if (skip.saved > 0) entry["left_out"] = {{"amount", skip.saved}, {"unit", skip.unit}};
+        if (skip.counter) entry["done"] = {{"amount", skip.counter(statistics)}, {"unit", skip.counted}};
+        list.push_back(std::move(entry));
+    }
+    return {{"skips", std::move(list)}, {"counted_in_camera_paths", statistics.samples}};
+}
+
+void print(const std::vector<Skip>& skips, const RenderStatistics& statistics) {
+    TextTable table(
+        5, {"what", "state", "left out", fmt::format("done in {} paths", grouped_text(statistics.samples)), "why"});
+    for (const Skip& skip : skips) {
+        table.add({std::string(skip.name), std::string(name_of(skip.state)),
+                   skip.saved > 0 ? amount_text(skip.saved, skip.unit) : "",
+                   skip.counter ? amount_text(skip.counter(statistics), skip.counted) : "", skip.why});
+    }
+    fmt::print("{}", table.text());
+}
+
+Result<void> print_skips(const Scene& scene, bool json) {
+    const auto frame = glance_at(scene);
+    if (!frame) return fail("", "", "the scene cannot be rendered");
+    const std::vector<Skip> skips = skips_of(*frame->render_scene);
+    if (json) {
+        fmt::print("{}\n", describe(skips, frame->statistics).dump(2));
+    } else {
+        print(skips, frame->statistics);
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> run_info(const InfoOptions& options) {
     auto scene = load_scene(options.scene);
     if (!scene) return tl::unexpected(scene.error());
+    if (options.skips) return print_skips(*scene, options.json);
     BuildControl control;
     const auto shared = std::make_shared<const Scene>(std::move(*scene));
     const auto built = RenderScene::update(nullptr, shared, all_changes(), control);

@@ -98,6 +98,7 @@ void add_screenshot(CLI::App& app, ScreenshotOptions& options) {
 void add_info(CLI::App& app, InfoOptions& options) {
     CLI::App& command = *app.add_subcommand("info", "Print what a scene holds and how its tree came out");
     command.add_option("scene", options.scene, "Scene to read")->required();
+    command.add_flag("--skips", options.skips, "Instead: what the renderer leaves out for this scene, and why");
     command.add_flag("--json", options.json, "As JSON");
 }
 

@@ -43,6 +43,7 @@ struct ScreenshotOptions {
 
 struct InfoOptions {
     std::filesystem::path scene;
+    bool skips = false;  ///< What the renderer leaves out, instead.
     bool json = false;
 };
 

@@ -52,4 +52,10 @@ std::string grouped_text(std::uint64_t value) {
     return digits;
 }
 
+std::string amount_text(std::uint64_t value, std::string_view unit) {
+    if (unit == "bytes") return quantity_text(static_cast<double>(value), "B");
+    if (value == 1 && unit.ends_with('s')) unit.remove_suffix(1);
+    return fmt::format("{} {}", grouped_text(value), unit);
+}
+
 }  // namespace rayuela

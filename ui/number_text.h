@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace rayuela {
 
@@ -13,5 +14,7 @@ std::string count_text(double count);
 std::string quantity_text(double value, const char* unit);
 /// All digits, in groups of three: "1 234 567".
 std::string grouped_text(std::uint64_t value);
+/// "12.3 kB" where the unit is "bytes", else all digits and the unit, a plural: "1 234 objects", "1 object".
+std::string amount_text(std::uint64_t value, std::string_view unit);
 
 }  // namespace rayuela

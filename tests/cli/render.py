@@ -124,6 +124,24 @@ def test_info():
     assert "box" in run("info", scenes / "fig2.scene.json").stdout
 
 
+def test_skips():
+    def skips(scene):
+        printed = json.loads(run("info", scenes / f"{scene}.scene.json", "--skips", "--json").stdout)
+        assert printed["counted_in_camera_paths"] > 100
+        for skip in printed["skips"]:
+            assert skip["why"]
+            assert not (skip["state"] == "skipped" and skip.get("done", {"amount": 0})["amount"]), (scene, skip)
+        return {skip["name"]: skip for skip in printed["skips"]}
+
+    sky, room = skips("weekend"), skips("cornell")
+    assert sky["Shadow rays"]["state"] == "skipped" and sky["Environment"]["done"]["amount"] > 0
+    assert sky["Lens samples"]["state"] == "needed"
+    assert room["Environment"]["state"] == "skipped" and room["Shadow rays"]["done"]["amount"] > 0
+    table = run("info", scenes / "cornell.scene.json", "--skips").stdout
+    assert len(table.splitlines()) == 2 + len(room)
+    assert all(any(line.startswith(name) for line in table.splitlines()) for name in room)
+
+
 tests = [value for name, value in list(globals().items()) if name.startswith("test_")]
 failed = 0
 for test in tests:

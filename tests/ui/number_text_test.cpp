@@ -33,5 +33,12 @@ TEST(NumberText, GroupsOfThreeDigits) {
     EXPECT_EQ(grouped_text(1234567), "1 234 567");
 }
 
+TEST(NumberText, AmountsOfBytesAreRoundedOthersAreNot) {
+    EXPECT_EQ(amount_text(123456, "bytes"), "123 kB");
+    EXPECT_EQ(amount_text(123456, "objects"), "123 456 objects");
+    EXPECT_EQ(amount_text(1, "objects"), "1 object");
+    EXPECT_EQ(amount_text(0, "objects"), "0 objects");
+}
+
 }  // namespace
 }  // namespace rayuela

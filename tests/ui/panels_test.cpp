@@ -1,4 +1,6 @@
 #include "ui/panels/panels.h"
+
+#include "core/render/skips.h"
 #include "tests/ui/harness.h"
 #include "tests/ui/temporary_folder.h"
 #include "ui/commands.h"
@@ -376,6 +378,30 @@ TEST_F(PanelTest, EveryControlHasATooltip) {
         // Statistics has numbers, but no control before there is a curve.
         EXPECT_GE(explained, panel.name == std::string_view("Statistics") ? 0 : 4) << panel.name;
     }
+}
+
+TEST_F(PanelTest, SkipsFollowTheScene) {
+    editor().paused = true;
+    run([](ImGuiTestContext* script) { script->WindowFocus("//Skips"); });
+    const auto panel = [&] {
+        draw_until_rendered(1);
+        const Image window = pixels();
+        const ImRect rect = ImGui::FindWindowByName("Skips")->InnerRect;
+        std::vector<Vec4> part;
+        for (int y = static_cast<int>(rect.Min.y); y < static_cast<int>(rect.Max.y); ++y)
+            for (int x = static_cast<int>(rect.Min.x); x < static_cast<int>(rect.Max.x); ++x)
+                part.push_back(window.at(x, y));
+        return part;
+    };
+    const std::vector<Vec4> with_sky = panel();
+    editor().edit(SetEnvironment{NoEnvironment{}}, "Night");
+    const std::vector<Vec4> without = panel();
+    ASSERT_EQ(with_sky.size(), without.size());
+    EXPECT_NE(with_sky, without);
+    const auto skips = skips_of(*editor().frame()->render_scene);
+    const auto bounces = std::ranges::find(skips, std::string_view("Bounces"), &Skip::name);
+    EXPECT_EQ(bounces->state, SkipState::skipped);
+    EXPECT_EQ(bounces->counter(editor().frame()->statistics), 0u);
 }
 
 }  // namespace

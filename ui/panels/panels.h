@@ -11,6 +11,7 @@ void draw_inspector_panel(Editor& editor);
 void draw_camera_panel(Editor& editor);
 void draw_render_panel(Editor& editor);
 void draw_statistics_panel(Editor& editor);
+void draw_skips_panel(Editor& editor);
 void draw_log_panel(Editor& editor);
 
 enum class DockArea : std::uint8_t { left, right_top, right_bottom, bottom };
@@ -31,6 +32,7 @@ inline constexpr std::array kPanels = {
     Panel{"Camera", "Where from and how the scene is seen.", DockArea::right_bottom, draw_camera_panel},
     Panel{"Render", "Structure, leaf size, bounces, limits.", DockArea::right_bottom, draw_render_panel},
     Panel{"Statistics", "What the renderer does, in numbers.", DockArea::bottom, draw_statistics_panel},
+    Panel{"Skips", "What this scene skips, and why.", DockArea::bottom, draw_skips_panel},
     Panel{"Log", "What has happened.", DockArea::bottom, draw_log_panel},
 };
 
