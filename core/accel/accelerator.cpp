@@ -14,6 +14,7 @@ AccelStats& AccelStats::operator+=(const AccelStats& other) {
     nodes += other.nodes;
     leaves += other.leaves;
     memory_bytes += other.memory_bytes;
+    kept_bytes += other.kept_bytes;
     depth = std::max(depth, other.depth);
     return *this;
 }

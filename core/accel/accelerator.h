@@ -36,7 +36,8 @@ struct AccelStats {
     std::uint64_t nodes = 0;       ///< Inner nodes and leaves.
     std::uint64_t leaves = 0;
     std::uint64_t memory_bytes = 0;
-    int depth = 0;  ///< Of the deepest leaf; a root that is a leaf has depth 0.
+    std::uint64_t kept_bytes = 0;  ///< Beyond these, trees of meshes that are hidden or deleted and may come back.
+    int depth = 0;                 ///< Of the deepest leaf; a root that is a leaf has depth 0.
 
     AccelStats& operator+=(const AccelStats& other);
 };
@@ -54,8 +55,8 @@ class Accelerator {
 public:
     virtual ~Accelerator() = default;
 
-    /// Builds in parallel on the calling thread's task arena. Trees of meshes that `previous` already has with the same
-    /// settings are shared. Null when cancelled.
+    /// Builds in parallel on the calling thread's task arena. Trees of meshes that `previous` has or
+    /// keeps with the same settings are shared. Null when cancelled.
     static std::shared_ptr<const Accelerator> build(std::vector<GeometryInstance> instances,
                                                     const AccelSettings& settings, const Accelerator* previous,
                                                     BuildControl& control);

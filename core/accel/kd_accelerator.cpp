@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <unordered_set>
 
 namespace rayuela {
 namespace {
@@ -29,21 +30,13 @@ std::shared_ptr<const KdAccelerator> KdAccelerator::build(std::vector<GeometryIn
 }
 
 bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& control) {
-    const bool reusable = previous && same_trees(previous->settings_, settings_);
-    const auto tree_of = [](const auto& trees, const TriangleMesh* mesh) {
-        const auto found =
-            std::find_if(trees.begin(), trees.end(), [&](const auto& t) { return t->mesh.get() == mesh; });
-        return found == trees.end() ? nullptr : *found;
-    };
+    if (previous && same_trees(previous->settings_, settings_)) mesh_trees_ = previous->mesh_trees_;
+    std::erase_if(mesh_trees_, [](const auto& entry) { return entry.second->mesh.expired(); });
+
     std::vector<std::shared_ptr<const TriangleMesh>> missing;
     for (const TracedObject& object : objects_) {
-        const TriangleMesh* mesh = object.mesh();
-        if (!mesh || tree_of(mesh_trees_, mesh)) continue;
-        if (auto tree = reusable ? tree_of(previous->mesh_trees_, mesh) : nullptr) {
-            mesh_trees_.push_back(std::move(tree));
-        } else if (std::none_of(missing.begin(), missing.end(), [&](const auto& m) { return m.get() == mesh; })) {
+        if (object.mesh() && mesh_trees_.try_emplace(object.mesh()).second)
             missing.push_back(std::get<std::shared_ptr<const TriangleMesh>>(object.shape));
-        }
     }
     for (const auto& mesh : missing) control.total += mesh->triangles.size();
     control.total += objects_.size();
@@ -53,12 +46,10 @@ bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& co
         for (std::size_t i = begin; i < end; ++i) built[i] = build_mesh_tree(missing[i], settings_, control);
     });
     if (control.cancelled || std::count(built.begin(), built.end(), nullptr) > 0) return false;
-    mesh_trees_.insert(mesh_trees_.end(), built.begin(), built.end());
+    for (std::size_t i = 0; i < missing.size(); ++i) mesh_trees_[missing[i].get()] = std::move(built[i]);
 
-    for (const TracedObject& object : objects_) {
-        const auto tree = object.mesh() ? tree_of(mesh_trees_, object.mesh()) : nullptr;
-        mesh_of_object_.push_back(tree.get());
-    }
+    for (const TracedObject& object : objects_)
+        mesh_of_object_.push_back(object.mesh() ? mesh_trees_.at(object.mesh()).get() : nullptr);
     return true;
 }
 
@@ -74,7 +65,14 @@ bool KdAccelerator::build_objects(BuildControl& control) {
     if (!tree) return false;
     tree_ = std::move(*tree);
     leaves_ = make_object_leaves(objects_, tree_);
-    for (const auto& mesh_tree : mesh_trees_) stats_ += mesh_tree->stats;
+    const std::unordered_set<const MeshTree*> in_use(mesh_of_object_.begin(), mesh_of_object_.end());
+    for (const auto& [mesh, mesh_tree] : mesh_trees_) {
+        if (in_use.contains(mesh_tree.get())) {
+            stats_ += mesh_tree->stats;
+        } else {
+            stats_.kept_bytes += mesh_tree->stats.memory_bytes;
+        }
+    }
     stats_ += tree_.stats();
     stats_.memory_bytes += objects_.size() * sizeof(TracedObject) + leaves_.memory_bytes();
     return true;

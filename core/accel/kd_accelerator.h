@@ -2,6 +2,8 @@
 
 #include "core/accel/kd_kernels.h"
 
+#include <unordered_map>
+
 namespace rayuela {
 
 /// Two levels of kd-trees: one over each distinct mesh in its own space, one over the objects. Planes are tested in turn.
@@ -34,7 +36,8 @@ private:
     AccelSettings settings_;
     std::vector<TracedObject> objects_;
     std::vector<std::uint32_t> planes_;
-    std::vector<std::shared_ptr<const MeshTree>> mesh_trees_;
+    /// Those of meshes that are out of sight stay for as long as the mesh and the settings do.
+    std::unordered_map<const TriangleMesh*, std::shared_ptr<const MeshTree>> mesh_trees_;
     std::vector<const MeshTree*> mesh_of_object_;
     KdTree tree_;
     ObjectLeaves leaves_;

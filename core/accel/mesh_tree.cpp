@@ -46,8 +46,8 @@ std::vector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, 
 
 }  // namespace
 
-std::shared_ptr<const MeshTree> build_mesh_tree(std::shared_ptr<const TriangleMesh> mesh, const AccelSettings& settings,
-                                                BuildControl& control) {
+std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                const AccelSettings& settings, BuildControl& control) {
     const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
     if (control.cancelled) return nullptr;
     auto tree = build_kd_tree(
@@ -61,7 +61,7 @@ std::shared_ptr<const MeshTree> build_mesh_tree(std::shared_ptr<const TriangleMe
     result->stats = result->tree.stats();
     result->stats.primitives = mesh->triangles.size();
     result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
-    result->mesh = std::move(mesh);
+    result->mesh = mesh;
     return result;
 }
 

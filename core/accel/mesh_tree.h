@@ -7,9 +7,9 @@
 namespace rayuela {
 
 /// The kd-tree of one mesh in its own space, shared by all its instances, with the triangles of each leaf side by side as
-/// SIMD wants them. Immutable.
+/// SIMD wants them. Immutable. Does not keep the mesh.
 struct MeshTree {
-    std::shared_ptr<const TriangleMesh> mesh;
+    std::weak_ptr<const TriangleMesh> mesh;
     KdTree tree;
     /// The runs (triangle_runs.h) of a leaf with references from `first` begin at kTriangleRuns * first.
     std::vector<float> leaf_data;
@@ -17,7 +17,7 @@ struct MeshTree {
 };
 
 /// Null when cancelled.
-std::shared_ptr<const MeshTree> build_mesh_tree(std::shared_ptr<const TriangleMesh> mesh, const AccelSettings& settings,
-                                                BuildControl& control);
+std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                const AccelSettings& settings, BuildControl& control);
 
 }  // namespace rayuela

@@ -41,6 +41,10 @@ std::vector<PackedMaterial> pack_all(const Scene& scene) {
     return packed;
 }
 
+bool same_ids(const Scene& a, const Scene& b) {
+    return std::ranges::equal(a.materials, b.materials, {}, &MaterialEntry::id, &MaterialEntry::id);
+}
+
 /// The shape as rays meet it, unless it is a group or its file is missing. glTF files are flattened into their parts.
 std::optional<TracedShape> traced_shape(const Shape& shape) {
     return std::visit(
@@ -154,17 +158,17 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
                                                        const SceneChanges& changes, BuildControl& control) {
     auto next = previous ? std::make_shared<RenderScene>(*previous) : std::make_shared<RenderScene>();
     next->scene_ = std::move(scene);
-    const bool materials = !previous || changes.materials || changes.emission;
-    const bool objects = !previous || changes.geometry || changes.assignment || changes.materials;
-    const bool trees = !previous || changes.geometry || changes.accel;
-    const bool lights = !previous || changes.geometry || changes.assignment || changes.emission || changes.environment;
+    const bool materials = !previous || changes.materials;
+    const bool geometry = !previous || changes.geometry;
+    const bool trees = geometry || changes.accel;
+    const bool objects = trees || changes.assignment || (materials && !same_ids(*previous->scene_, *next->scene_));
 
     if (materials) next->materials_ = std::make_shared<const PackedMaterials>(pack_all(*next->scene_));
-    if (objects || trees) {
+    if (objects) {
         std::vector<GeometryInstance> instances;
         FlatObjects flat;
         next->flatten(instances, flat);
-        if (!previous || changes.geometry) next->origin_ = origin_near(instances);
+        if (geometry) next->origin_ = origin_near(instances);
         for (GeometryInstance& instance : instances) instance.to_world.translation -= next->origin_;
         next->objects_ = std::make_shared<const FlatObjects>(std::move(flat));
         if (trees) {
@@ -176,23 +180,60 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
         }
     }
     if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);
-    if (lights) {
-        std::vector<const Material*> of_instances;
-        for (const FlatObject& object : *next->objects_)
-            of_instances.push_back(&(*next->materials_)[object.material].material);
-        next->lights_ = std::make_shared<const LightTable>(next->accelerator_->instances(), of_instances,
-                                                           next->scene_->environment);
-    }
+    const bool may_shine = materials || objects || changes.environment;
+    if (may_shine) next->update_lights(previous);
     next->features_ = next->find_features();
-    if (lights || materials || objects) next->emission_ = next->find_emission();
+    if (may_shine) next->update_emission(previous);
     return next;
+}
+
+/// Unless they are those of `previous`, which may be null.
+void RenderScene::update_lights(const RenderScene* previous) {
+    const bool panorama = environment_.image() || (previous && previous->environment_.image());
+    const bool sky = previous && panorama && scene_->environment != previous->scene_->environment;
+    if (!previous || sky || !same_lamps(*previous)) {
+        std::vector<const Material*> of_instances;
+        for (const FlatObject& object : *objects_) of_instances.push_back(&(*materials_)[object.material].material);
+        lights_ = std::make_shared<const LightTable>(accelerator_->instances(), of_instances, scene_->environment);
+    }
+}
+
+/// Unless it is that of `previous`, which may be null.
+void RenderScene::update_emission(const RenderScene* previous) {
+    const bool same = previous && lights_ == previous->lights_ && same_targets(*previous) &&
+                      features_.light_sampling() == previous->features_.light_sampling();
+    if (!same) emission_ = find_emission();
+}
+
+std::vector<std::uint32_t> RenderScene::objects_with(bool PackedMaterial::*property) const {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < objects_->size(); ++i) {
+        if (packed_material(i).*property) found.push_back(i);
+    }
+    return found;
+}
+
+/// Whether the same lamps stand at the same places, by the same numbers.
+bool RenderScene::same_lamps(const RenderScene& other) const {
+    const std::vector<std::uint32_t> lamps = objects_with(&PackedMaterial::emissive);
+    return lamps == other.objects_with(&PackedMaterial::emissive) && std::ranges::all_of(lamps, [&](std::uint32_t i) {
+               return accelerator_->instances()[i] == other.accelerator_->instances()[i] &&
+                      material(i) == other.material(i);
+           });
+}
+
+/// Whether the same mirrors and glass stand at the same places.
+bool RenderScene::same_targets(const RenderScene& other) const {
+    return std::ranges::equal(objects_with(&PackedMaterial::delta), other.objects_with(&PackedMaterial::delta),
+                              [&](std::uint32_t i, std::uint32_t j) {
+                                  return accelerator_->instances()[i] == other.accelerator_->instances()[j];
+                              });
 }
 
 std::shared_ptr<const LightEmission> RenderScene::find_emission() const {
     if (!features_.emitters || !features_.light_sampling()) return nullptr;
     std::vector<Ball> targets;
-    for (std::uint32_t i = 0; i < objects_->size(); ++i) {
-        if (!packed_material(i).delta) continue;
+    for (const std::uint32_t i : objects_with(&PackedMaterial::delta)) {
         if (const auto ball = ball_around(accelerator_->instances()[i])) targets.push_back(*ball);
     }
     if (targets.empty()) return nullptr;
@@ -215,7 +256,8 @@ Features RenderScene::find_features() const {
 }
 
 std::uint64_t RenderScene::memory_bytes() const {
-    std::uint64_t total = accelerator_->stats().memory_bytes + surfaces_->memory_bytes() + lights_->memory_bytes() +
+    const AccelStats trees = accelerator_->stats();
+    std::uint64_t total = trees.memory_bytes + trees.kept_bytes + surfaces_->memory_bytes() + lights_->memory_bytes() +
                           (emission_ ? emission_->memory_bytes() : 0);
     std::unordered_set<const void*> seen;
     const auto add = [&](const auto& data) {

@@ -68,6 +68,11 @@ private:
     using PackedMaterials = std::vector<PackedMaterial>;
 
     void flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const;
+    void update_lights(const RenderScene* previous);
+    void update_emission(const RenderScene* previous);
+    std::vector<std::uint32_t> objects_with(bool PackedMaterial::*property) const;
+    bool same_lamps(const RenderScene& other) const;
+    bool same_targets(const RenderScene& other) const;
     Features find_features() const;
     std::shared_ptr<const LightEmission> find_emission() const;
 

@@ -6,19 +6,19 @@ namespace rayuela {
 
 /// What differs between two scenes, by what has to be rebuilt for it. Derived by `diff`, never set by hand.
 struct SceneChanges {
-    bool film_size = false;    ///< A new film.
-    bool camera = false;       ///< Nothing is rebuilt.
-    bool sampling = false;     ///< Bounces, roulette, sampler, seed, filter: nothing is rebuilt.
-    bool materials = false;    ///< Packed materials; lights where emission changed.
-    bool emission = false;     ///< Light table.
-    bool geometry = false;     ///< Shapes, transforms, visibility, objects added or removed: the top level.
-    bool assignment = false;   ///< An object's material.
+    bool film_size = false;  ///< A new film.
+    bool camera = false;     ///< Nothing is rebuilt.
+    bool sampling = false;   ///< Bounces, roulette, sampler, seed, filter: nothing is rebuilt.
+    bool materials = false;  ///< Packed materials; lights where what emits changed.
+    bool geometry =
+        false;  ///< Shapes, transforms, visibility, objects added or removed: the top level; lights as above.
+    bool assignment = false;   ///< An object's material; lights as above.
     bool environment = false;  ///< Its distribution.
     bool accel = false;        ///< Trees; the image does not depend on them, so accumulation goes on.
 
     /// Whether what has been accumulated is of no use any more.
     bool restarts() const {
-        return film_size || camera || sampling || materials || emission || geometry || assignment || environment;
+        return film_size || camera || sampling || materials || geometry || assignment || environment;
     }
     bool any() const { return restarts() || accel; }
     bool operator==(const SceneChanges&) const = default;
