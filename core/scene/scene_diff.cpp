@@ -15,12 +15,20 @@ bool same_surface(const Shape& a, const Shape& b) {
     return a == b;
 }
 
+/// What becomes of a hidden object shows when it does.
+bool stays_hidden(const Object& a, const Object& b) {
+    return !a.visible && !b.visible;
+}
+
 bool same_geometry(const Object& a, const Object& b) {
-    return a.id == b.id && a.parent == b.parent && a.visible == b.visible && a.transform == b.transform &&
+    if (a.id != b.id) return false;
+    if (stays_hidden(a, b)) return true;
+    return a.parent == b.parent && a.visible == b.visible && a.transform == b.transform &&
            same_surface(a.shape, b.shape);
 }
 
 bool same_assignment(const Object& a, const Object& b) {
+    if (stays_hidden(a, b)) return true;
     if (a.material != b.material) return false;
     const auto* gltf_a = std::get_if<Gltf>(&a.shape);
     const auto* gltf_b = std::get_if<Gltf>(&b.shape);

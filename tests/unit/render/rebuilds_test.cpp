@@ -219,6 +219,20 @@ TEST_F(Rebuilds, HiddenObjectsAreNotBuiltAndComeBackAsTheyWere) {
     EXPECT_EQ(shown.scene->accelerator().stats().kept_bytes, 0u);
 }
 
+TEST_F(Rebuilds, AHiddenObjectIsEditedForNothingUntilItIsShown) {
+    torus().visible = false;
+    const Version hidden = next(before, scene);
+    torus().transform.translate.x = 2;
+    torus().material = scene.materials[kClay].id;
+    const Version edited = next(hidden, scene);
+    EXPECT_TRUE(same_trees(hidden, edited));
+    torus().visible = true;
+    const Version shown = next(edited, scene);
+    EXPECT_EQ(shown.built, kObjects);
+    EXPECT_EQ(shown.scene->accelerator().instances()[3].to_world, torus().transform.affine());
+    EXPECT_EQ(shown.scene->material(3), scene.materials[kClay].material);
+}
+
 TEST_F(Rebuilds, ADeletedMeshComesBackAsItWasOrIsForgotten) {
     const Scene whole = scene;
     const std::weak_ptr<const TriangleMesh> mesh = std::get<Mesh>(torus().shape).data;

@@ -78,6 +78,18 @@ TEST(SceneDiff, ObjectsAndMaterials) {
     EXPECT_EQ(changes_by([](Scene& s) { s.objects[2].material = MaterialId{}; }), assignment);
 }
 
+TEST(SceneDiff, WhatHappensToHiddenObjectsIsSeenLater) {
+    Scene before = lit_scene();
+    for (Object& object : before.objects) object.visible = false;
+    Scene after = before;
+    after.objects[0].transform.translate.x = 1;
+    std::get<Sphere>(after.objects[1].shape).radius = 3;
+    after.objects[2].material = MaterialId{4};
+    EXPECT_FALSE(diff(before, after).any());
+    after.objects[2].visible = true;
+    EXPECT_EQ(diff(before, after), (SceneChanges{.geometry = true, .assignment = true}));
+}
+
 TEST(SceneDiff, MeshesAreWhatTheyHoldNotWhereTheyCameFrom) {
     Scene a = lit_scene();
     a.objects[2].shape = Mesh{"a.ply", std::make_shared<TriangleMesh>()};
