@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace rayuela {
 
@@ -23,14 +25,42 @@ std::map<std::string, int> count_by_type(const auto& entries, const auto& member
     return counts;
 }
 
-nlohmann::ordered_json describe(const Scene& scene, const AccelStats& accel, std::size_t lights) {
+/// What the meshes of all visible objects hold, each counted once.
+nlohmann::ordered_json describe_meshes(std::span<const GeometryInstance> instances) {
+    std::set<const TriangleMesh*> meshes;
+    for (const GeometryInstance& instance : instances) {
+        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape))
+            meshes.insert(mesh->get());
+    }
+    double triangles = 0, indices = 0, positions = 0, normals = 0, uvs = 0;
+    const auto bytes = [](const auto& values) { return static_cast<double>(values.size() * sizeof(values[0])); };
+    for (const TriangleMesh* mesh : meshes) {
+        triangles += static_cast<double>(mesh->triangles.size());
+        indices += bytes(mesh->triangles);
+        positions += bytes(mesh->positions);
+        normals += bytes(mesh->normals);
+        uvs += bytes(mesh->uvs);
+    }
+    const auto each = [&](double total) { return triangles > 0 ? std::round(10 * total / triangles) / 10 : 0; };
+    return {
+        {"count", meshes.size()},
+        {"triangles", static_cast<std::uint64_t>(triangles)},
+        {"bytes_a_triangle",
+         {{"indices", each(indices)}, {"positions", each(positions)}, {"normals", each(normals)}, {"uvs", each(uvs)}}}};
+}
+
+nlohmann::ordered_json describe(const RenderScene& built) {
+    const Scene& scene = built.scene();
+    const AccelStats accel = built.accelerator().stats();
+    const double primitives = static_cast<double>(std::max<std::uint64_t>(1, accel.primitives));
     const Bounds3 bounds = world_bounds(scene);
     nlohmann::ordered_json info = {
         {"film", {{"width", scene.film.width}, {"height", scene.film.height}}},
         {"objects", count_by_type(scene.objects, &Object::shape)},
         {"materials", count_by_type(scene.materials, &MaterialEntry::material)},
         {"environment", std::visit([](const auto& e) { return e.kType; }, scene.environment)},
-        {"lights", lights},
+        {"lights", built.lights().size()},
+        {"meshes", describe_meshes(built.accelerator().instances())},
         {"accelerator",
          {{"kind", scene.render.accel.kind == AcceleratorKind::kd ? "kd" : "list"},
           {"leaf_size", scene.render.accel.leaf_size},
@@ -41,7 +71,8 @@ nlohmann::ordered_json describe(const Scene& scene, const AccelStats& accel, std
           {"nodes", accel.nodes},
           {"leaves", accel.leaves},
           {"depth", accel.depth},
-          {"memory_bytes", accel.memory_bytes}}}};
+          {"memory_bytes", accel.memory_bytes},
+          {"bytes_a_primitive", std::round(10 * static_cast<double>(accel.memory_bytes) / primitives) / 10}}}};
     if (!bounds.empty()) {
         info["bounds"] = {{"min", {bounds.lo.x, bounds.lo.y, bounds.lo.z}},
                           {"max", {bounds.hi.x, bounds.hi.y, bounds.hi.z}}};
@@ -118,7 +149,7 @@ Result<void> run_info(const InfoOptions& options) {
     BuildControl control;
     const auto shared = std::make_shared<const Scene>(std::move(*scene));
     const auto built = RenderScene::update(nullptr, shared, all_changes(), control);
-    const auto info = describe(*shared, built->accelerator().stats(), built->lights().size());
+    const auto info = describe(*built);
     if (options.json) {
         fmt::print("{}\n", info.dump(2));
     } else {

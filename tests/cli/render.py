@@ -122,6 +122,14 @@ def test_info():
     info = json.loads(run("info", scenes / "fig2.scene.json", "--json").stdout)
     assert info["objects"]["box"] == 1
     assert "box" in run("info", scenes / "fig2.scene.json").stdout
+    assert info["meshes"]["count"] == 0
+
+    pathlib.Path("two.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
+    info = json.loads(run("info", "two.obj", "--json").stdout)
+    assert info["meshes"]["triangles"] == 2
+    assert info["meshes"]["bytes_a_triangle"] == {"indices": 12, "positions": 24, "normals": 0, "uvs": 0}
+    # Three corners and an extent of four bytes each in a leaf, its number, and whatever the nodes and the object take.
+    assert info["accelerator"]["bytes_a_primitive"] > 44
 
 
 def test_skips():
