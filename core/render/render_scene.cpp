@@ -175,8 +175,7 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
             next->accelerator_ = Accelerator::build(std::move(instances), next->scene_->render.accel,
                                                     previous ? &previous->accelerator() : nullptr, control);
             if (!next->accelerator_) return nullptr;
-            if (!previous || changes.geometry)
-                next->surfaces_ = std::make_shared<const Surfaces>(next->accelerator_->instances());
+            if (geometry) next->surfaces_ = std::make_shared<const Surfaces>(next->accelerator_->instances());
         }
     }
     if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);

@@ -112,12 +112,14 @@ Skip lens_samples(const RenderScene& scene) {
 
 Skip textures(const RenderScene& scene) {
     const bool active = !scene.features().textures;
-    return {.name = "Textures",
-            .state = skipped_if(active),
-            .why = active ? "No material varies over a surface: each is worked out once, not at every hit."
-                          : "A material varies over its surface.",
-            .counter = [](const RenderStatistics& s) { return s.textured_hits; },
-            .counted = "textured hits"};
+    return {
+        .name = "Textures",
+        .state = skipped_if(active),
+        .why = active
+                   ? "No material varies over a surface: each is worked out once, and no hit has texture coordinates."
+                   : "A material varies over its surface.",
+        .counter = [](const RenderStatistics& s) { return s.textured_hits; },
+        .counted = "textured hits"};
 }
 
 /// Objects that have a place in a tree.

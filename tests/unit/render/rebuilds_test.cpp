@@ -193,6 +193,7 @@ TEST_F(Rebuilds, TheLeafSizeRebuildsTrees) {
     const Version after = next(before, scene);
     EXPECT_EQ(after.built, kObjects + kTriangles);
     EXPECT_NE(torus_tree(after), torus_tree(before));
+    EXPECT_EQ(&after.scene->surfaces(), &before.scene->surfaces());
     EXPECT_TRUE(same_lights(before, after) && same_emission(before, after));
     scene.render.max_samples = 7;
     EXPECT_EQ(next(after, scene).built, 0u);
