@@ -22,6 +22,7 @@ RELATIVE = {
     "core/materials/microfacet.h": ["kSmoothAlpha"],
     "core/render/camera_rays.cpp": ["kParallel"],
     "core/render/image_error.cpp": ["kTrimmedShare"],
+    "core/render/reference_trace.cpp": ["kEdge"],
     "core/render/schedule.cpp": ["kGuessedPathSeconds"],
 }
 

@@ -28,6 +28,8 @@ public:
     const Film& film() const { return film_; }
     /// Scene object (ObjectId::value) that the first sample of each pixel met first.
     const std::vector<std::uint32_t>& object_ids() const { return object_ids_; }
+    /// Pixels that lack samples which the film has rejected, ascending.
+    std::vector<RejectedPixel> rejected_pixels() const;
     /// Samples that every pixel has.
     int samples() const;
 

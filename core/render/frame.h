@@ -44,6 +44,14 @@ struct RenderStatistics {
     int threads = 0;
 };
 
+/// A pixel that lacks samples because their value made no sense.
+struct RejectedPixel {
+    std::uint32_t pixel = 0;  ///< Row-major from the upper left.
+    std::uint32_t samples = 0;
+
+    bool operator==(const RejectedPixel&) const = default;
+};
+
 /// A published image: immutable, complete, and shared with whoever looks at it.
 struct Frame {
     std::uint64_t version = 0;  ///< Grows with every publication of a session.
@@ -51,6 +59,7 @@ struct Frame {
     bool coarse = false;        ///< A preview of reduced resolution; its pixels never enter the film.
     /// First object met by the first sample of each pixel, as ObjectId::value (0: none). Size of the image.
     std::vector<std::uint32_t> object_ids;
+    std::vector<RejectedPixel> rejected_pixels;       ///< Ascending; none while coarse. Light paths are not among them.
     std::shared_ptr<const Scene> scene;               ///< What it shows.
     std::shared_ptr<const RenderScene> render_scene;  ///< To pick in.
     RenderStatistics statistics;

@@ -155,6 +155,9 @@ std::shared_ptr<const Frame> ProgressiveRenderer::publish(SessionPhase phase, bo
         estimated_error_ = coarse ? 0 : source.film().relative_error();
     });
     frame->statistics = statistics(phase);
+    const bool complete_samples =
+        std::ranges::all_of(frame->statistics.rejected, [](auto count) { return count == 0; });
+    if (!coarse && !complete_samples) frame->rejected_pixels = source.rejected_pixels();
     if (!coarse) {
         film_shown_ = true;
         film_unpublished_ = false;

@@ -75,13 +75,13 @@ def test_a_replayed_sample_is_that_of_the_film():
     lit = 0
     for x, y in ((3, 4), (16, 12), (30, 23)):
         printed = run("render", *scene, "--replay", f"{x},{y},0").stdout
-        assert "bounce 0: throughput (1 1 1)" in printed
+        assert "bounce 0\n" in printed and "  throughput  (1 1 1)\n" in printed
         sample = [float(v) for v in printed.strip().splitlines()[-1].removeprefix("sample (").rstrip(")").split()]
         first = 12 * (width * (height - 1 - y) + x)
         pixel = struct.unpack("<3f", data[first:first + 12])
         assert all(abs(a - b) <= 1e-5 * abs(b) for a, b in zip(sample, pixel)), (x, y, sample, pixel)
         lit += sum(pixel) > 0
-    assert lit > 0 and " +- (" in run("render", *scene, "--replay", "16,12,0").stdout
+    assert lit > 0 and "  +-          (" in run("render", *scene, "--replay", "16,12,0").stdout
     wrong = subprocess.run([rayuela, "render", str(scene[0]), "--replay", "1,99999,0"], capture_output=True, text=True)
     assert wrong.returncode == 1 and "is no sample of a film" in wrong.stderr
 
