@@ -218,7 +218,8 @@ constexpr double kLongestSleep = 60;  ///< Seconds; then the editor may have som
 bool Application::Impl::wait_and_decide(FrameTiming& timing) {
     constexpr double kCheckLoads = 0.1;  ///< A finished load posts no event.
     timing.published = published;
-    timing.animating = viewport.is_animating() || editor.session().status().phase == SessionPhase::building;
+    timing.animating =
+        viewport.is_animating() || editor.health.is_busy() || editor.session().status().phase == SessionPhase::building;
     timing.now = now_seconds();
     const double longest = editor.is_loading() ? kCheckLoads : kLongestSleep;
     const double wait = std::min(seconds_to_next_frame(timing), longest);
@@ -300,7 +301,9 @@ Image Application::screenshot(int spp) {
             frame && frame->scene && frame->scene->film == impl_->editor.shown().film && !frame->coarse;
         const bool done =
             current && (frame->statistics.spp >= spp || frame->statistics.phase == SessionPhase::finished);
-        if (frames >= kSettlingFrames && !impl_->editor.is_loading() && !impl_->viewport.is_animating() && done) break;
+        if (frames >= kSettlingFrames && !impl_->editor.is_loading() && !impl_->viewport.is_animating() &&
+            !impl_->editor.health.is_busy() && done)
+            break;
         std::this_thread::sleep_for(kPause);
     }
     return impl_->context->read_pixels();

@@ -107,6 +107,10 @@ void CameraControl::click(Editor& editor, const Canvas& canvas) {
 
     const Vec2 position = canvas.to_image(editor.view, to_vec(io.MousePos)) / canvas.image_size;
     const bool inside = position.x >= 0 && position.y >= 0 && position.x < 1 && position.y < 1;
+    if (editor.health.replays && inside) {
+        editor.health.replayed_pixel = glm::ivec2(position * canvas.image_size);
+        return;
+    }
     const std::optional<Pick> hit = inside ? pick(*frame->render_scene, position) : std::nullopt;
     if (io.MouseClickedLastCount[ImGuiMouseButton_Left] == 2) {
         if (!hit) return;

@@ -191,12 +191,23 @@ void add_view_commands(std::vector<Command>& list) {
                         const auto next =
                             (static_cast<std::size_t>(editor.view.tone_map) + 1) % std::size(kToneMapNames);
                         editor.view.tone_map = static_cast<ToneMap>(next);
+                        editor.view.map = ViewMap::image;
                     }});
+    for (std::size_t i = 0; i < std::size(kViewMaps); ++i) {
+        const auto map = static_cast<ViewMap>(i);
+        list.push_back({.menu = "View",
+                        .name = kViewMaps[i].name,
+                        .tip = kViewMaps[i].tip,
+                        .run = [map](Editor& editor) { editor.view.map = map; },
+                        .checked = [map](const Editor& editor) { return editor.view.map == map; },
+                        .starts_group = i == 0});
+    }
     list.push_back({.menu = "View",
                     .name = "Outline",
                     .tip = "Marks the selected object in the image.",
                     .run = [](Editor& editor) { editor.view.show_outline = !editor.view.show_outline; },
-                    .checked = [](const Editor& editor) { return editor.view.show_outline; }});
+                    .checked = [](const Editor& editor) { return editor.view.show_outline; },
+                    .starts_group = true});
     for (std::size_t i = 0; i < kPanels.size(); ++i) {
         static_assert(kPanels.size() <= std::tuple_size_v<decltype(PanelState::closed)>);
         list.push_back({.menu = "View",

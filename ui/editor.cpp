@@ -101,6 +101,7 @@ void Editor::begin_frame(std::uint64_t gesture) {
 
     frame_ = session_.frame();
     if (frame_) convergence_.add(frame_->statistics);
+    health.update(frame_, view.map);
     if (std::chrono::steady_clock::now() - autosave_time_ >= kAutosaveInterval) autosave();
 }
 

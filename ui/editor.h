@@ -6,6 +6,7 @@
 #include "core/scene/scene_edit.h"
 #include "ui/convergence.h"
 #include "ui/file_dialog.h"
+#include "ui/health.h"
 #include "ui/log.h"
 #include "ui/panels/panel_state.h"
 #include "ui/preferences.h"
@@ -100,6 +101,7 @@ public:
     ViewSettings view;
     Preferences preferences;
     PanelState panels;
+    Health health;
     FileDialog file_dialog;
     Log log;
     bool paused = false;

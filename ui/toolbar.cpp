@@ -2,6 +2,7 @@
 
 #include "ui/camera_views.h"
 #include "ui/icons.h"
+#include "ui/map_colors.h"
 #include "ui/number_text.h"
 #include "ui/theme.h"
 
@@ -79,14 +80,32 @@ void draw_zoom(Editor& editor) {
     }
 }
 
+/// Tone maps, and below them what can be shown in place of the image.
+void draw_view_choice(ViewSettings& view) {
+    const bool shows_map = view.map != ViewMap::image;
+    const char* const shown = shows_map ? kViewMaps[static_cast<std::size_t>(view.map)].name
+                                        : kToneMapNames[static_cast<std::size_t>(view.tone_map)];
+    if (!ImGui::BeginCombo("##tone_map", shown, ImGuiComboFlags_HeightLarge)) return;
+    for (std::size_t i = 0; i < std::size(kToneMapNames); ++i) {
+        const auto tone_map = static_cast<ToneMap>(i);
+        if (!ImGui::Selectable(kToneMapNames[i], !shows_map && view.tone_map == tone_map)) continue;
+        view.tone_map = tone_map;
+        view.map = ViewMap::image;
+    }
+    ImGui::Separator();
+    for (std::size_t i = 1; i < std::size(kViewMaps); ++i) {
+        const auto map = static_cast<ViewMap>(i);
+        if (ImGui::Selectable(kViewMaps[i].name, view.map == map)) view.map = map;
+        tooltip(kViewMaps[i].tip);
+    }
+    ImGui::EndCombo();
+}
+
 void draw_tone(ViewSettings& view) {
     const float unit = ImGui::GetFontSize();
-    ImGui::SetNextItemWidth(7.2f * unit);
-    int tone_map = static_cast<int>(view.tone_map);
-    if (ImGui::Combo("##tone_map", &tone_map, kToneMapNames, IM_ARRAYSIZE(kToneMapNames))) {
-        view.tone_map = static_cast<ToneMap>(tone_map);
-    }
-    tooltip("How radiance becomes display colour. Never restarts the image.");
+    ImGui::SetNextItemWidth(8 * unit);
+    draw_view_choice(view);
+    tooltip("How radiance becomes display colour, or which numbers are shown instead. Never restarts the image.");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(6.2f * unit);
     const std::string format = fmt::format("{}  %+.2f EV", icon::kSun);
@@ -139,19 +158,24 @@ void draw_progress(double fraction) {
     ImGui::SameLine();
 }
 
-void draw_pixel(const Frame& frame, const glm::ivec2& pixel) {
+std::string pixel_text(const Editor& editor, const Frame& frame, const glm::ivec2& pixel) {
+    if (const auto value = editor.health.value(pixel))
+        return fmt::format("{:4d}, {:4d}   {}", pixel.x, pixel.y, map_value_text(editor.view.map, *value));
     const FilmSettings& film = frame.scene->film;
     const int x = pixel.x * frame.image.width / film.width, y = pixel.y * frame.image.height / film.height;
     const Vec4& value = frame.image.at(x, y);
-    const std::string text =
-        fmt::format("{:4d}, {:4d}   R {:.4f}  G {:.4f}  B {:.4f}", pixel.x, pixel.y, value.x, value.y, value.z);
+    return fmt::format("{:4d}, {:4d}   R {:.4f}  G {:.4f}  B {:.4f}", pixel.x, pixel.y, value.x, value.y, value.z);
+}
+
+void draw_pixel(const Editor& editor, const Frame& frame, const glm::ivec2& pixel) {
+    const std::string text = pixel_text(editor, frame, pixel);
     ImGui::PushFont(mono_font(), 0);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     const float start = ImGui::GetContentRegionMax().x - width;
     if (start > ImGui::GetCursorPosX()) {
         ImGui::SameLine(start);
         ImGui::TextColored(color(theme::kMuted), "%s", text.c_str());
-        tooltip("The pixel under the mouse: column, row and its linear radiance");
+        tooltip("The pixel under the mouse: column, row and its linear radiance, or the number that the map shows");
     }
     ImGui::PopFont();
 }
@@ -195,7 +219,7 @@ void draw_status_line(Editor& editor, const glm::ivec2& pixel) {
         "Samples in every pixel, size of the image, rendering time, speed and estimated relative mean squared error");
     ImGui::SameLine(0, ImGui::GetFontSize());
     const bool inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < film.width && pixel.y < film.height;
-    if (inside && !frame->image.pixels.empty()) draw_pixel(*frame, pixel);
+    if (inside && !frame->image.pixels.empty()) draw_pixel(editor, *frame, pixel);
     ImGui::NewLine();
 }
 

@@ -1,6 +1,7 @@
 #include "ui/viewport.h"
 
 #include "ui/layout.h"
+#include "ui/map_colors.h"
 #include "ui/pixel_values.h"
 #include "ui/theme.h"
 #include "ui/toolbar.h"
@@ -38,6 +39,19 @@ void draw_centered(const Canvas& canvas, float line, const std::string& text, Im
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const Vec2 position = canvas.corner + 0.5f * (canvas.size - Vec2(size.x, size.y)) + Vec2(0, line * 1.6f * size.y);
     ImGui::GetWindowDrawList()->AddText({position.x, position.y}, ImGui::GetColorU32(color), text.c_str());
+}
+
+/// A frame around the pixel whose sample is replayed.
+void mark_pixel(const Canvas& canvas, const Editor& editor) {
+    if (!editor.health.replayed()) return;
+    const ImageView view = canvas.view(editor.view);
+    const Vec2 pixel(editor.health.replayed_pixel);
+    const float margin = 0.25f * ImGui::GetFontSize();
+    const Vec2 low = canvas.corner + view.to_viewport(pixel) / canvas.density - margin;
+    const Vec2 high = canvas.corner + view.to_viewport(pixel + 1.0f) / canvas.density + margin;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRect({low.x - 1, low.y - 1}, {high.x + 1, high.y + 1}, IM_COL32(0, 0, 0, 200), 0, 3.0f);
+    list.AddRect({low.x, low.y}, {high.x, high.y}, ImGui::GetColorU32(ImVec4(1, 1, 1, 1)));
 }
 
 }  // namespace
@@ -93,14 +107,17 @@ void Viewport::draw_image(Editor& editor, const Vec2& size) {
     request.size = glm::ivec2(size * canvas_.density);
     request.origin = before.origin;
     request.zoom = before.zoom;
-    request.exposure = editor.view.exposure;
-    request.tone_map = editor.view.tone_map;
+    const std::shared_ptr<const Frame> map = editor.health.picture();
+    if (!map) {
+        request.exposure = editor.view.exposure;
+        request.tone_map = editor.view.tone_map;
+    }
     if (editor.view.show_outline && editor.selection) {
         request.outline_width = kOutlineWidth * ImGui::GetFontSize() / theme::kFontSize * canvas_.density;
         request.outlined = with_children(editor.scene(), *editor.selection);
     }
     const Vec2 end = canvas_.corner + size;
-    if (const Display::Picture picture = display_.draw(frame, request); picture.texture) {
+    if (const Display::Picture picture = display_.draw(map ? map : frame, request); picture.texture) {
         list.AddImage(static_cast<ImTextureID>(picture.texture), {canvas_.corner.x, canvas_.corner.y}, {end.x, end.y},
                       {0, 1}, {picture.lower_right.x, picture.lower_right.y});
     }
@@ -127,6 +144,10 @@ void Viewport::draw_overlays(Editor& editor) {
     list.PushClipRect({canvas_.corner.x, canvas_.corner.y}, {end.x, end.y}, true);
     if (editor.frame()) draw_pixel_values(*editor.frame(), canvas_, editor.view);
     draw_false_color_scale(canvas_, editor.view);
+    draw_map_scale(canvas_, editor.view.map);
+    if (editor.view.map != ViewMap::image && !editor.health.picture())
+        draw_centered(canvas_, 0, "The map is being worked out", ImGuiCol_Text);
+    mark_pixel(canvas_, editor);
     if (editor.is_loading() && editor.scene().objects.empty()) {
         draw_centered(canvas_, 0, fmt::format("Loading {}", editor.loading_label()), ImGuiCol_Text);
     } else if (editor.scene().objects.empty()) {

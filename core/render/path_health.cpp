@@ -47,12 +47,28 @@ void count_rays(const RenderScene& scene, std::uint32_t paths, const std::atomic
     }
 }
 
-void count_draws(const Bsdf& bsdf, const Vec3& wo, PathHealth& health) {
+}  // namespace
+
+void count_ray(std::span<const GeometryInstance> instances, const PathRecord::Vertex& from,
+               const PathRecord::Vertex& to, PathHealth& health) {
+    ++health.scattered_rays;
+    const TracedShape& shape = instances[from.hit.object].shape;
+    const bool is_sphere = std::holds_alternative<Sphere>(shape), is_box = std::holds_alternative<Box>(shape);
+    const bool inward = glm::dot(to.ray.direction, from.point.ng) < 0;
+    const bool same = to.hit.object == from.hit.object && to.hit.primitive == from.hit.primitive;
+    if (same && !(is_sphere && inward)) ++health.self_hits;
+    if (!inward || !(is_sphere || is_box)) return;
+    ++health.inner_rays;
+    const auto exit = reference_distance(TracedObject(instances[from.hit.object]), RayD(to.ray));
+    if (!exit || to.hit.t > *exit * (1 + 4 * double{kUnitRoundoff})) ++health.left_closed;
+}
+
+void count_draws(const DrawDirection& draw, PathHealth& health) {
     Vec3d sum(0), squares(0);
     std::uint64_t drawn = 0;
     for (std::uint32_t i = 0; i < kDraws; ++i) {
         const Sampler sampler(SamplerKind::independent, 0, 0, i);
-        const auto sample = bsdf.sample(wo, sampler.get_1d(0), sampler.get_2d(1));
+        const auto sample = draw(sampler.get_1d(0), sampler.get_2d(1));
         if (!sample) continue;
         const Vec3d weight(sample->weight);
         sum += weight;
@@ -70,22 +86,6 @@ void count_draws(const Bsdf& bsdf, const Vec3& wo, PathHealth& health) {
     health.highest_share = std::max(health.highest_share, max_component(Vec3(mean)));
 }
 
-}  // namespace
-
-void count_ray(std::span<const GeometryInstance> instances, const PathRecord::Vertex& from,
-               const PathRecord::Vertex& to, PathHealth& health) {
-    ++health.scattered_rays;
-    const TracedShape& shape = instances[from.hit.object].shape;
-    const bool is_sphere = std::holds_alternative<Sphere>(shape), is_box = std::holds_alternative<Box>(shape);
-    const bool inward = glm::dot(to.ray.direction, from.point.ng) < 0;
-    const bool same = to.hit.object == from.hit.object && to.hit.primitive == from.hit.primitive;
-    if (same && !(is_sphere && inward)) ++health.self_hits;
-    if (!inward || !(is_sphere || is_box)) return;
-    ++health.inner_rays;
-    const auto exit = reference_distance(TracedObject(instances[from.hit.object]), RayD(to.ray));
-    if (!exit || to.hit.t > *exit * (1 + 4 * double{kUnitRoundoff})) ++health.left_closed;
-}
-
 PathHealth measure_path_health(const RenderScene& scene, std::uint32_t paths, const std::atomic<bool>& cancelled) {
     PathHealth health;
     for (const MaterialEntry& entry : scene.scene().materials) {
@@ -93,8 +93,11 @@ PathHealth measure_path_health(const RenderScene& scene, std::uint32_t paths, co
         for (const float cosine : kCosines) {
             if (cancelled) return health;
             const float sine = std::sqrt(1 - cosine * cosine);
-            count_draws(bsdf, Vec3(sine, 0, cosine), health);
-            if (transmits(entry.material)) count_draws(bsdf, Vec3(sine, 0, -cosine), health);
+            const auto count_from = [&](const Vec3& wo) {
+                count_draws([&](float u_lobe, const Vec2& u) { return bsdf.sample(wo, u_lobe, u); }, health);
+            };
+            count_from(Vec3(sine, 0, cosine));
+            if (transmits(entry.material)) count_from(Vec3(sine, 0, -cosine));
         }
     }
     count_rays(scene, paths, cancelled, health);

@@ -3,6 +3,8 @@
 #include "core/render/path_record.h"
 #include "core/render/render_scene.h"
 
+#include <functional>
+
 namespace rayuela {
 
 /// What goes wrong on the ways of light, counted on a number of paths and draws. On demand: the renderer itself does not count,
@@ -22,6 +24,10 @@ struct PathHealth {
     std::uint64_t above_one = 0;  ///< Of these, more than 1 by more than four standard errors.
     float highest_share = 0;      ///< Of all pairs; may exceed 1 by chance.
 };
+
+/// Counts draws of directions, each from three numbers in [0, 1): draw(u_lobe, u).
+using DrawDirection = std::function<std::optional<BsdfSample>(float, const Vec2&)>;
+void count_draws(const DrawDirection& draw, PathHealth& health);
 
 /// Counts the ray from one vertex of a path to the next.
 void count_ray(std::span<const GeometryInstance> instances, const PathRecord::Vertex& from,

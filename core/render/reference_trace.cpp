@@ -168,6 +168,10 @@ Rectangle around(const TracedObject& object, const AffineD& to_world, const Rast
         return raster.around(corners_of(sphere->center - sphere->radius, sphere->center + sphere->radius, to_world));
     if (const auto* box = std::get_if<Box>(&object.shape))
         return raster.around(corners_of(Vec3d(box->min), Vec3d(box->max), to_world));
+    if (const auto* triangle = std::get_if<TriangleCorners>(&object.shape))
+        return raster.around(std::vector<Vec3d>(triangle->begin(), triangle->end()));
+    if (const auto* quad = std::get_if<QuadCorners>(&object.shape))
+        return raster.around(std::vector<Vec3d>(quad->begin(), quad->end()));
     return raster.whole();
 }
 

@@ -35,7 +35,7 @@ inline constexpr std::array kReplayFields = {
                 "What the ray met, with the number of the triangle or face; or what a light sample aimed at."},
     ReplayField{"t", &ReplayRow::t, "Distance along the ray, as the accelerator found it."},
     ReplayField{"point", &ReplayRow::point, "The hit point in the scene's space."},
-    ReplayField{"+-", &ReplayRow::error,
+    ReplayField{"error bound", &ReplayRow::error,
                 "Bound on the error of the point, per axis: the next ray starts beyond it, so that it cannot meet the "
                 "surface it leaves."},
     ReplayField{"material", &ReplayRow::material, "Kind of the material there."},

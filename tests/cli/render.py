@@ -81,7 +81,7 @@ def test_a_replayed_sample_is_that_of_the_film():
         pixel = struct.unpack("<3f", data[first:first + 12])
         assert all(abs(a - b) <= 1e-5 * abs(b) for a, b in zip(sample, pixel)), (x, y, sample, pixel)
         lit += sum(pixel) > 0
-    assert lit > 0 and "  +-          (" in run("render", *scene, "--replay", "16,12,0").stdout
+    assert lit > 0 and "  error bound (" in run("render", *scene, "--replay", "16,12,0").stdout
     wrong = subprocess.run([rayuela, "render", str(scene[0]), "--replay", "1,99999,0"], capture_output=True, text=True)
     assert wrong.returncode == 1 and "is no sample of a film" in wrong.stderr
 

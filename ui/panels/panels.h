@@ -13,6 +13,7 @@ void draw_render_panel(Editor& editor);
 void draw_statistics_panel(Editor& editor);
 void draw_skips_panel(Editor& editor);
 void draw_log_panel(Editor& editor);
+void draw_health_panel(Editor& editor);
 
 enum class DockArea : std::uint8_t { left, right_top, right_bottom, bottom };
 
@@ -34,6 +35,8 @@ inline constexpr std::array kPanels = {
     Panel{"Statistics", "What the renderer does, in numbers.", DockArea::bottom, draw_statistics_panel},
     Panel{"Skips", "What this scene skips, and why.", DockArea::bottom, draw_skips_panel},
     Panel{"Log", "What has happened.", DockArea::bottom, draw_log_panel},
+    Panel{"Health", "How sound the numbers are: rejected samples, self-hits, energy; any sample step by step.",
+          DockArea::bottom, draw_health_panel},
 };
 
 }  // namespace rayuela

@@ -1,4 +1,5 @@
 #include "ui/number_text.h"
+#include "ui/panels/number_table.h"
 #include "ui/panels/panels.h"
 #include "ui/theme.h"
 #include "ui/widgets.h"
@@ -14,32 +15,6 @@ namespace {
 
 constexpr const char* kRejectionNames[] = {"not a number", "infinite", "negative"};
 
-ImVec4 to_imgui(const Vec4& color) {
-    return {color.x, color.y, color.z, color.w};
-}
-
-void row(const char* name, const std::string& value, const char* tip, const Vec4* color = nullptr) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", name);
-    tooltip(tip);
-    ImGui::TableNextColumn();
-    const ImVec4 text = color ? to_imgui(*color) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
-    ImGui::PushFont(mono_font(), 0);
-    const float width = ImGui::CalcTextSize(value.c_str()).x;
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, ImGui::GetContentRegionAvail().x - width));
-    ImGui::TextColored(text, "%s", value.c_str());
-    ImGui::PopFont();
-    tooltip(tip);
-}
-
-bool begin_numbers(const char* id, float width) {
-    if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp, {width, 0})) return false;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.1f);
-    return true;
-}
-
 constexpr const char* kErrorTip =
     "Estimated relative mean squared error of the image: the expected square of (pixel - true pixel) over the true "
     "pixel's "
@@ -52,49 +27,54 @@ std::string percent(double relative_mse) {
 }
 
 void draw_rendering(const RenderStatistics& s, float width) {
-    if (!begin_numbers("rendering", width)) return;
+    if (!begin_number_table("rendering", width)) return;
     const bool known = s.estimated_error > 0;
     std::uint64_t rejected = 0;
     for (const std::uint64_t count : s.rejected) rejected += count;
-    row("Samples a pixel", grouped_text(static_cast<std::uint64_t>(s.spp)), "Camera paths that every pixel has got.");
-    row("Time", duration_text(s.render_seconds), "Rendering since the last restart, pauses left out.");
-    row("Speed", quantity_text(s.samples_per_second, "samples/s"), "Camera paths a second over the whole image.");
-    row("Rays", quantity_text(s.rays_per_second, "rays/s"), "Closest-hit and shadow rays a second.");
-    row("Error (relMSE)", known ? fmt::format("{:.2e}", s.estimated_error) : "-", kErrorTip);
-    row("Noise", known ? percent(s.estimated_error) : "-",
-        "Square root of the error: how far a pixel typically is from the truth.");
-    row("Rejected", grouped_text(rejected),
-        "Samples left out because their value made no sense. Zero is right; anything else is a defect.",
-        rejected > 0 ? &theme::kError : nullptr);
+    number_row("Samples a pixel", grouped_text(static_cast<std::uint64_t>(s.spp)),
+               "Camera paths that every pixel has got.");
+    number_row("Time", duration_text(s.render_seconds), "Rendering since the last restart, pauses left out.");
+    number_row("Speed", quantity_text(s.samples_per_second, "samples/s"),
+               "Camera paths a second over the whole image.");
+    number_row("Rays", quantity_text(s.rays_per_second, "rays/s"), "Closest-hit and shadow rays a second.");
+    number_row("Error (relMSE)", known ? fmt::format("{:.2e}", s.estimated_error) : "-", kErrorTip);
+    number_row("Noise", known ? percent(s.estimated_error) : "-",
+               "Square root of the error: how far a pixel typically is from the truth.");
+    number_row("Rejected", grouped_text(rejected),
+               "Samples left out because their value made no sense. Zero is right; anything else is a defect.",
+               rejected > 0 ? &theme::kError : nullptr);
     for (std::size_t i = 0; i < s.rejected.size(); ++i) {
         if (s.rejected[i] > 0)
-            row(kRejectionNames[i], grouped_text(s.rejected[i]), "Samples rejected for this cause.", &theme::kError);
+            number_row(kRejectionNames[i], grouped_text(s.rejected[i]), "Samples rejected for this cause.",
+                       &theme::kError);
     }
-    row("Memory", quantity_text(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
-    row("Paths", grouped_text(s.samples), "Camera paths since the last restart.");
-    row("Restarts", grouped_text(s.restarts), "How often accumulation has begun anew since the program started.");
-    row("Threads", std::to_string(s.threads), "Workers that trace rays.");
+    number_row("Memory", quantity_text(static_cast<double>(s.memory_bytes), "B"), "Trees, meshes, images and film.");
+    number_row("Paths", grouped_text(s.samples), "Camera paths since the last restart.");
+    number_row("Restarts", grouped_text(s.restarts),
+               "How often accumulation has begun anew since the program started.");
+    number_row("Threads", std::to_string(s.threads), "Workers that trace rays.");
     ImGui::EndTable();
 }
 
 void draw_structure(const RenderStatistics& s, float width) {
-    if (!begin_numbers("structure", width)) return;
+    if (!begin_number_table("structure", width)) return;
     const AccelStats& a = s.accel;
     const auto ratio = [](std::uint64_t count, std::uint64_t of) {
         return of > 0 ? fmt::format("{:.2f}", static_cast<double>(count) / static_cast<double>(of)) : "-";
     };
-    row("Build", duration_text(s.build_seconds),
-        "Time to derive all that the renderer needs from the last edit, trees included.");
-    row("Primitives", grouped_text(a.primitives), "Shapes and triangles; an instanced mesh counts once.");
-    row("Nodes", grouped_text(a.nodes), "Inner nodes and leaves of all trees.");
-    row("Leaves", grouped_text(a.leaves), "Leaves of all trees.");
-    row("Depth", std::to_string(a.depth), "Of the deepest leaf.");
-    row("Refs a primitive", ratio(a.references, a.primitives),
-        "How often a primitive lies in a leaf, on average: 1 means that none was cut by a plane.");
-    row("Tree memory", quantity_text(static_cast<double>(a.memory_bytes), "B"), "Of the acceleration structure.");
-    row("Refs a leaf", ratio(a.references, a.leaves), "Primitives that a ray meets in a leaf, on average.");
-    row("References", grouped_text(a.references),
-        "Primitives over all leaves: one that is cut by a plane lies in several.");
+    number_row("Build", duration_text(s.build_seconds),
+               "Time to derive all that the renderer needs from the last edit, trees included.");
+    number_row("Primitives", grouped_text(a.primitives), "Shapes and triangles; an instanced mesh counts once.");
+    number_row("Nodes", grouped_text(a.nodes), "Inner nodes and leaves of all trees.");
+    number_row("Leaves", grouped_text(a.leaves), "Leaves of all trees.");
+    number_row("Depth", std::to_string(a.depth), "Of the deepest leaf.");
+    number_row("Refs a primitive", ratio(a.references, a.primitives),
+               "How often a primitive lies in a leaf, on average: 1 means that none was cut by a plane.");
+    number_row("Tree memory", quantity_text(static_cast<double>(a.memory_bytes), "B"),
+               "Of the acceleration structure.");
+    number_row("Refs a leaf", ratio(a.references, a.leaves), "Primitives that a ray meets in a leaf, on average.");
+    number_row("References", grouped_text(a.references),
+               "Primitives over all leaves: one that is cut by a plane lies in several.");
     ImGui::EndTable();
 }
 

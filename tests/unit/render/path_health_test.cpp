@@ -23,13 +23,41 @@ TEST(PathHealth, OfEveryShapeAndMaterialIsGood) {
     EXPECT_NEAR(health.highest_share, 1, 0.02) << "mirror and glass keep all light";
 }
 
-TEST(PathHealth, FindsAMaterialThatMakesLight) {
+TEST(PathHealth, MeasuresWhatAMirrorKeeps) {
     Scene scene = testing::empty_scene(4, 4);
     testing::add_material(scene, Metal{.albedo = {Color(0.9f), nullptr}});
-    const PathHealth sound = measure_path_health(*testing::make_render_scene(scene), 1, kGoOn);
-    EXPECT_EQ(sound.above_one, 0u);
-    EXPECT_NEAR(sound.highest_share, 0.9f, 1e-6f);
-    EXPECT_EQ(sound.without_pdf, 0u);
+    const PathHealth health = measure_path_health(*testing::make_render_scene(scene), 1, kGoOn);
+    EXPECT_EQ(health.above_one, 0u);
+    EXPECT_NEAR(health.highest_share, 0.9f, 1e-6f);
+    EXPECT_EQ(health.without_pdf, 0u);
+}
+
+/// Weights of 0 and twice the share, with equal chance, but for the share of draws that fail.
+PathHealth drawn(float share, float failing = 0) {
+    PathHealth health;
+    count_draws(
+        [&](float u_lobe, const Vec2& u) -> std::optional<BsdfSample> {
+            if (u.x < failing) return std::nullopt;
+            return BsdfSample{
+                .wi = Vec3(0, 0, 1), .weight = Color(u_lobe < 0.5f ? 0 : 2 * share, 0.5f, 0.5f), .pdf = 1};
+        },
+        health);
+    return health;
+}
+
+TEST(PathHealth, KnowsMaterialsThatMakeLight) {
+    // A standard error is 1/64: 1.12 is beyond four of them, 1 is not.
+    EXPECT_EQ(drawn(1).above_one, 0u);
+    EXPECT_EQ(drawn(1.12f).above_one, 1u);
+    EXPECT_NEAR(drawn(1.12f).highest_share, 1.12f, 4 / 64.0f);
+    EXPECT_EQ(drawn(std::numeric_limits<float>::quiet_NaN()).above_one, 1u) << "nothing that cannot be told is sound";
+}
+
+TEST(PathHealth, CountsDrawsWithoutADensity) {
+    const PathHealth health = drawn(0.5f, 0.25f);
+    EXPECT_EQ(health.draws, 4096u);
+    EXPECT_NEAR(static_cast<double>(health.without_pdf), 1024, 5 * std::sqrt(4096 * 0.25 * 0.75));
+    EXPECT_EQ(drawn(0.5f, 1).draws, 0u) << "black is no defect";
 }
 
 /// A made-up ray from one place to another.
