@@ -1,6 +1,5 @@
 #include "core/render/health_maps.h"
 
-#include "core/accel/surface_point.h"
 #include "core/math/float_error.h"
 #include "core/render/camera_rays.h"
 
@@ -56,9 +55,8 @@ std::vector<float> rejected_map(std::span<const RejectedPixel> rejected, const g
 
 std::vector<float> position_error_map(const RenderScene& scene, const glm::ivec2& size,
                                       const std::atomic<bool>& cancelled) {
-    const std::span<const GeometryInstance> instances = scene.accelerator().instances();
     return map_of_hits(scene, size, cancelled, [&](std::size_t, const Ray& ray, const Hit& hit) {
-        return hit.valid() ? relative_error(surface_point(instances, ray, hit), ray) : kNothing;
+        return hit.valid() ? relative_error(scene.surfaces().point(ray, hit, false), ray) : kNothing;
     });
 }
 

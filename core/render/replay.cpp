@@ -40,10 +40,10 @@ ReplayRow arrival(const RenderScene& scene, const PathRecord::Vertex& v) {
     row.t = fmt::format("{:.9g}", v.hit.t);
     row.point = to_text(v.point.p + scene.origin());
     row.error = to_text(v.point.p_error);
-    row.normal = fmt::format("{} shading {}, uv ({:.6g} {:.6g})", to_text(v.point.ng), to_text(v.point.ns),
-                             v.point.uv.x, v.point.uv.y);
+    const Vec2 uv = scene.surfaces().point(v.ray, v.hit).uv;  // the path may not have asked for it
+    row.normal = fmt::format("{} shading {}, uv ({:.6g} {:.6g})", to_text(v.point.ng), to_text(v.point.ns), uv.x, uv.y);
     const bool front = glm::dot(v.ray.direction, v.point.ng) < 0;
-    const Color light = emitted(material, v.point.uv, front);
+    const Color light = emitted(material, uv, front);
     if (is_black(light)) return row;
     row.light = to_text(light);
     const bool sampled = v.state.bsdf_pdf > 0 && !scene.lights().empty();
