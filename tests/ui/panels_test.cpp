@@ -350,6 +350,8 @@ TEST_F(PanelTest, LogFiltersAndClears) {
 TEST_F(PanelTest, EveryControlHasATooltip) {
     editor().selection = ball().id;
     editor().paused = true;
+    editor().health.replays = true;
+    editor().health.replayed_pixel = {60, 45};
     ImGui::GetStyle().HoverStationaryDelay = 0;
     ImGui::GetStyle().HoverDelayNormal = ImGui::GetStyle().HoverDelayShort = 0;
     for (const Panel& panel : kPanels) {

@@ -179,22 +179,27 @@ void draw_health_panel(Editor& editor) {
         hint("Numbers appear here with the first image.");
         return;
     }
-    // Side by side where there is room, as at the bottom of the window; else one below the other.
     const float available = ImGui::GetContentRegionAvail().x, unit = ImGui::GetFontSize();
-    const bool wide = available > 40 * unit;
-    const float first = wide ? 10.5f * unit : available, second = wide ? 17 * unit : available;
-    const auto next = [&] {
-        if (wide) ImGui::SameLine(0, 2 * ImGui::GetStyle().ItemSpacing.x);
-    };
-    ImGui::BeginGroup();
-    draw_rejected(editor.frame()->statistics, first);
-    draw_measure_button(editor.health, first);
-    draw_map_choice(editor.view, first);
-    ImGui::EndGroup();
-    next();
-    draw_measured(editor.health.measured(), second);
-    next();
-    draw_path(editor.health);
+    if (available > 40 * unit) {
+        const float gap = 2 * ImGui::GetStyle().ItemSpacing.x;
+        ImGui::BeginGroup();
+        draw_rejected(editor.frame()->statistics, 10.5f * unit);
+        draw_measure_button(editor.health, 10.5f * unit);
+        draw_map_choice(editor.view, 10.5f * unit);
+        ImGui::EndGroup();
+        ImGui::SameLine(0, gap);
+        draw_measured(editor.health.measured(), 17 * unit);
+        ImGui::SameLine(0, gap);
+        draw_path(editor.health);
+    } else {
+        const float half = 0.5f * (available - ImGui::GetStyle().ItemSpacing.x);
+        draw_measure_button(editor.health, half);
+        ImGui::SameLine();
+        draw_map_choice(editor.view, half);
+        draw_path(editor.health);
+        draw_rejected(editor.frame()->statistics, available);
+        draw_measured(editor.health.measured(), available);
+    }
 }
 
 }  // namespace rayuela
