@@ -30,6 +30,7 @@ void trace_mesh(const KdScene& scene, std::uint32_t object, std::span<const std:
     const MeshTree& mesh = *scene.mesh_trees[object];
     RayBlockWriter(rays, hits, &scene.objects[object], mesh.tree.bounds).write(ids, block);
     MeshClient<kQuery> client(mesh, object, block, rays, hits);
+    trace_packets(mesh.tree, block, client);
     trace_lanes(mesh.tree, block, client);
 }
 
@@ -79,6 +80,7 @@ void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit>
         RayBlockWriter(rays, hits, nullptr, scene.tree->bounds).write(open, work.block);
         work.candidates.clear();
         ObjectClient<kQuery> client(scene, work.block, rays, hits, work.candidates);
+        trace_packets(*scene.tree, work.block, client);
         trace_lanes(*scene.tree, work.block, client);
         trace_candidates<kQuery>(scene, rays, hits, work);
     }

@@ -162,8 +162,8 @@ struct LaneGroups {
 
 /// Traces the rays of the block through the tree, many at once:
 /// `void start(slot, i)`: ray i of the block now has the slot;
-/// `void visit(span<const LeafVisit>, LaneGroups&)` tests the primitives of the leaves, then sets the limits of the slots or
-/// stops those that have their answers.
+/// `void visit(span<const LeafVisit>, slots)` tests the primitives of the leaves, then sets the limits of the slots or stops
+/// those that have their answers.
 template <typename Client>
 HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& client) {
     LaneGroups groups;

@@ -28,6 +28,8 @@ public:
     float split() const { return std::bit_cast<float>(word_); }
     /// Index of the child below the plane; the one above it follows.
     std::uint32_t children() const { return data_ >> kChildrenShift; }
+    /// Whether the child below (0) or above (1) the plane is an empty leaf.
+    bool is_empty(std::uint32_t side) const { return (data_ >> (kEmptyShift + side) & 1) != 0; }
     void set_empty(bool below, bool above) {
         data_ |= (std::uint32_t{below} | std::uint32_t{above} << 1) << kEmptyShift;
     }

@@ -8,29 +8,28 @@
 
 #include "core/accel/kd_kernels.h"
 
-#include "core/accel/kd_lanes-inl.h"
+#include "core/accel/kd_packets-inl.h"
 #include "core/accel/sphere_lanes-inl.h"
 #include "core/accel/triangle_lanes-inl.h"
+#include "core/accel/triangle_packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
 enum class Query { closest, any };
 
-/// After the leaves visited were decided: rays with an answer stop, the others need to look no further than their hits.
-/// set_end(slot, t) tells those who test them.
-template <Query kQuery, typename SetEnd>
-HWY_INLINE void go_on(std::span<const LeafVisit> visits, const TriangleLanes& lanes, const RayBlock& block,
-                      std::span<const Ray> rays, std::span<const Hit> hits, LaneGroups& groups, const SetEnd& set_end) {
-    for (const LeafVisit& visit : visits) {
-        const std::uint32_t i = lanes.ray(visit.slot), id = block.id[i];
-        if (kQuery == Query::any && hits[id].valid()) {
-            groups.stop(visit.slot);
-        } else {
-            const float end = t_end(rays[id], hits[id]);
-            set_end(visit.slot, end);
-            groups.set_limit(visit.slot, end * block.t_scale[i]);
-        }
+/// After a leaf was visited by the ray in a slot: with an answer it stops, else it needs to look no further than its hit.
+/// set_end(slot, t) tells those who test it.
+template <Query kQuery, typename Slots, typename SetEnd>
+HWY_INLINE void go_on(std::size_t slot, std::size_t i, const RayBlock& block, std::span<const Ray> rays,
+                      std::span<const Hit> hits, Slots& slots, const SetEnd& set_end) {
+    const std::uint32_t id = block.id[i];
+    if (kQuery == Query::any && hits[id].valid()) {
+        slots.stop(slot);
+    } else {
+        const float end = t_end(rays[id], hits[id]);
+        set_end(slot, end);
+        slots.set_limit(slot, end * block.t_scale[i]);
     }
 }
 
@@ -40,14 +39,21 @@ class MeshClient {
 public:
     MeshClient(const MeshTree& mesh, std::uint32_t object, const RayBlock& block, std::span<const Ray> rays,
                std::span<Hit> hits)
-        : mesh_(mesh), object_(object), block_(block), rays_(rays), hits_(hits), triangles_(block, rays) {}
+        : mesh_(mesh),
+          object_(object),
+          block_(block),
+          rays_(rays),
+          hits_(hits),
+          triangles_(block, rays),
+          packet_(block, rays) {}
 
     HWY_INLINE void start(std::size_t slot, std::size_t i) {
         const std::uint32_t id = block_.id[i];
         triangles_.start(slot, i, t_end(rays_[id], hits_[id]));
     }
 
-    HWY_INLINE void visit(std::span<const LeafVisit> visits, LaneGroups& groups) {
+    template <typename Slots>
+    HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         for (const LeafVisit& visit : visits) {
             const std::size_t n = visit.leaf->count(), first = visit.leaf->first();
             const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * first;
@@ -57,8 +63,29 @@ public:
             }
         }
         decide();
-        go_on<kQuery>(visits, triangles_, block_, rays_, hits_, groups,
-                      [&](std::size_t slot, float end) HWY_ATTR { triangles_.set_end(slot, end); });
+        for (const LeafVisit& visit : visits) {
+            go_on<kQuery>(visit.slot, triangles_.ray(visit.slot), block_, rays_, hits_, slots,
+                          [&](std::size_t slot, float end) HWY_ATTR { triangles_.set_end(slot, end); });
+        }
+    }
+
+    HWY_INLINE void start_packet(std::size_t first, LaneBits lanes) {
+        first_ = first;
+        packet_.start(first, lanes, hits_);
+    }
+    HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
+        const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first();
+        const std::uint32_t* const names = mesh_.tree.references.data() + leaf.first();
+        LaneBits hit = 0;
+        packet_.test(runs, leaf.count(), mask_of(lanes),
+                     [&](std::size_t lane, std::size_t i, float t, float u, float v) HWY_ATTR {
+                         keep_closer({.t = t, .u = u, .v = v}, object_, names[i], hits_[block_.id[first_ + lane]]);
+                         hit |= LaneBits{1} << lane;
+                     });
+        for (; hit != 0; hit &= hit - 1) {
+            go_on<kQuery>(first_lane(hit), first_ + first_lane(hit), block_, rays_, hits_, packet,
+                          [&](std::size_t lane, float end) HWY_ATTR { packet_.set_end(lane, end); });
+        }
     }
 
 private:
@@ -74,6 +101,8 @@ private:
     std::span<const Ray> rays_;
     std::span<Hit> hits_;
     TriangleLanes triangles_;
+    TrianglePacket packet_;
+    std::size_t first_ = 0;  ///< Ray of the packet.
 };
 
 /// A mesh on the way of a ray.
@@ -95,6 +124,7 @@ public:
           hits_(hits),
           candidates_(candidates),
           triangles_(block, rays),
+          packet_(block, rays),
           spheres_(block, rays, leaves_.exact_spheres.data()) {}
 
     HWY_INLINE void start(std::size_t slot, std::size_t i) {
@@ -104,19 +134,53 @@ public:
         if (!leaves_.spheres.empty()) spheres_.start(slot, i, end);
     }
 
-    HWY_INLINE void visit(std::span<const LeafVisit> visits, LaneGroups& groups) {
+    template <typename Slots>
+    HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         for (const LeafVisit& visit : visits) {
             const ObjectLeaf& leaf = leaves_.leaves[visit.leaf->first()];
             add_triangles(visit.slot, leaf);
             add_spheres(visit.slot, leaf);
-            for (std::uint32_t k = 0; k < leaf.others; ++k) test(visit.slot, leaves_.others[leaf.first_other + k]);
+            test_others(block_.id[triangles_.ray(visit.slot)], leaf);
         }
         decide_triangles();
         decide_spheres();
-        go_on<kQuery>(visits, triangles_, block_, rays_, hits_, groups, [&](std::size_t slot, float end) HWY_ATTR {
-            triangles_.set_end(slot, end);
-            spheres_.set_end(slot, end);
-        });
+        for (const LeafVisit& visit : visits) {
+            go_on<kQuery>(visit.slot, triangles_.ray(visit.slot), block_, rays_, hits_, slots,
+                          [&](std::size_t slot, float end) HWY_ATTR {
+                              triangles_.set_end(slot, end);
+                              spheres_.set_end(slot, end);
+                          });
+        }
+    }
+
+    HWY_INLINE void start_packet(std::size_t first, LaneBits lanes) {
+        first_ = first;
+        packet_.start(first, lanes, hits_);
+        if (leaves_.spheres.empty()) return;
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const std::size_t lane = first_lane(lanes);
+            const std::uint32_t id = block_.id[first + lane];
+            spheres_.start(lane, first + lane, t_end(rays_[id], hits_[id]));
+        }
+    }
+    HWY_INLINE void visit_packet(const KdNode& node, LaneBits lanes, Packet& packet) {
+        const ObjectLeaf& leaf = leaves_.leaves[node.first()];
+        const float* const runs = leaves_.triangle_runs.data() + kTriangleRuns * leaf.first_triangle;
+        packet_.test(runs, leaf.triangles, mask_of(lanes),
+                     [&](std::size_t lane, std::size_t i, float t, float u, float v)
+                         HWY_ATTR { keep_triangle(first_ + lane, leaf.first_triangle + i, {.t = t, .u = u, .v = v}); });
+        for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
+            add_spheres(first_lane(rest), leaf);
+            test_others(block_.id[first_ + first_lane(rest)], leaf);
+        }
+        decide_spheres();
+        for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
+            go_on<kQuery>(first_lane(rest), first_ + first_lane(rest), block_, rays_, hits_, packet,
+                          [&](std::size_t lane, float end) HWY_ATTR {
+                              packet_.set_end(lane, end);
+                              spheres_.set_end(lane, end);
+                          });
+        }
     }
 
 private:
@@ -136,13 +200,16 @@ private:
     }
 
     HWY_INLINE void decide_triangles() {
-        triangles_.decide([&](std::uint32_t i, std::uint32_t name, float t, float u, float v) HWY_ATTR {
-            const ObjectTriangle& triangle = leaves_.triangles[name];
-            ShapeHit hit{.t = t, .u = u, .v = v};
-            if (triangle.kind != ObjectTriangle::whole)
-                set_quad_parameters(triangle.kind - ObjectTriangle::first_half, hit);
-            keep_closer(hit, triangle.object, 0, hits_[block_.id[i]]);
-        });
+        triangles_.decide([&](std::uint32_t i, std::uint32_t name, float t, float u, float v)
+                              HWY_ATTR { keep_triangle(i, name, {.t = t, .u = u, .v = v}); });
+    }
+
+    /// Ray i of the block hits the triangle with this name.
+    HWY_INLINE void keep_triangle(std::size_t i, std::size_t name, ShapeHit hit) {
+        const ObjectTriangle& triangle = leaves_.triangles[name];
+        if (triangle.kind != ObjectTriangle::whole)
+            set_quad_parameters(triangle.kind - ObjectTriangle::first_half, hit);
+        keep_closer(hit, triangle.object, 0, hits_[block_.id[i]]);
     }
 
     HWY_INLINE void decide_spheres() {
@@ -150,12 +217,14 @@ private:
                                    HWY_ATTR { keep_closer({.t = t}, object, 0, hits_[block_.id[i]]); });
     }
 
-    HWY_INLINE void test(std::size_t slot, std::uint32_t object) {
-        const std::uint32_t id = block_.id[triangles_.ray(slot)];
-        if (scene_.mesh_trees[object]) {
-            candidates_.push_back({object, id});
-        } else {
-            intersect_object(scene_.objects, object, rays_[id], hits_[id]);
+    HWY_INLINE void test_others(std::uint32_t id, const ObjectLeaf& leaf) {
+        for (std::uint32_t k = 0; k < leaf.others; ++k) {
+            const std::uint32_t object = leaves_.others[leaf.first_other + k];
+            if (scene_.mesh_trees[object]) {
+                candidates_.push_back({object, id});
+            } else {
+                intersect_object(scene_.objects, object, rays_[id], hits_[id]);
+            }
         }
     }
 
@@ -166,7 +235,9 @@ private:
     std::span<Hit> hits_;
     std::vector<MeshCandidate>& candidates_;
     TriangleLanes triangles_;
+    TrianglePacket packet_;
     SphereLanes spheres_;
+    std::size_t first_ = 0;  ///< Ray of the packet.
 };
 
 }  // namespace rayuela::HWY_NAMESPACE

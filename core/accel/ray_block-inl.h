@@ -136,8 +136,9 @@ private:
         return hn::And(hn::Eq(nothing, zero), hn::And(hn::Gt(length, zero), hn::Le(t_min, t_max)));
     }
 
-    /// False only for rays whose line passes the bounds by, where the exact tests see this very ray. In double, for origins so far away that pads in float would have
-    /// all rays enter. The tolerance, relative, is far above what the exact tests and these operations are off by.
+    /// False only for rays whose line passes the bounds by, where the exact tests see this very ray. In double, for origins
+    /// so far away that pads in float would have all rays enter. The tolerance, relative, is far above what the exact tests
+    /// and these operations are off by.
     HWY_INLINE hn::Mask<HalfFloatTag> may_meet_bounds(const DoubleVec3& o, const DoubleVec3& d) const {
         const DoubleTag dd;
         const Doubles tolerance = hn::Set(dd, kBoundsTolerance);

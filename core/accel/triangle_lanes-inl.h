@@ -7,9 +7,8 @@
 #endif
 
 #include "core/accel/triangle_runs.h"
-#include "core/shapes/intersect_triangle.h"
 
-#include "core/accel/kd_lanes-inl.h"
+#include "core/accel/triangle_tests-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -40,42 +39,18 @@ struct TriangleFilter {
         return filter;
     }
 
-    HWY_INLINE void set_end(float t_max) {
-        const float from = depth * t_min, to = depth * t_max;
-        constexpr float kRounding = 4 * kUnitRoundoff;
-        z_begin = std::min(from, to);
-        z_end = std::max(from, to);
-        z_begin -= pad + kRounding * std::fabs(z_begin);
-        z_end += pad + kRounding * std::fabs(z_end);
-    }
+    HWY_INLINE void set_end(float t_max) { depth_range(depth, pad, t_min, t_max, z_begin, z_end); }
 };
 
-/// False only for triangles that the exact test rejects. With u the unit roundoff and R = |origin| + |bounds|, the sheared
-/// vertices are right within 8uR; those of a triangle of extent E that is hit are below 2E; so its edge functions are right
-/// within 128uR(E + uR), which is less than 16 pad (E + 1.6 pad). A hit's depth lies between those of the vertices, which are
-/// right within pad. That holds with and without fma.
+/// Up to kLanes triangles of a leaf, from the one that `runs` begins with.
 HWY_INLINE FloatMask may_hit(const TriangleFilter& ray, const float* runs, std::size_t n) {
     const FloatTag d;
-    const Floats ox = hn::Set(d, ray.ox), oy = hn::Set(d, ray.oy), oz = hn::Set(d, ray.oz);
-    const Floats sx = hn::Set(d, ray.shear_x), sy = hn::Set(d, ray.shear_y);
+    const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
     const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n); };
-    const Floats az = hn::Sub(load(ray.z), oz), bz = hn::Sub(load(3 + ray.z), oz), cz = hn::Sub(load(6 + ray.z), oz);
-    const Floats ax = hn::NegMulAdd(sx, az, hn::Sub(load(ray.x), ox)),
-                 ay = hn::NegMulAdd(sy, az, hn::Sub(load(ray.y), oy));
-    const Floats bx = hn::NegMulAdd(sx, bz, hn::Sub(load(3 + ray.x), ox)),
-                 by = hn::NegMulAdd(sy, bz, hn::Sub(load(3 + ray.y), oy));
-    const Floats cx = hn::NegMulAdd(sx, cz, hn::Sub(load(6 + ray.x), ox)),
-                 cy = hn::NegMulAdd(sy, cz, hn::Sub(load(6 + ray.y), oy));
-    const Floats u = hn::NegMulAdd(cy, bx, hn::Mul(cx, by));
-    const Floats v = hn::NegMulAdd(ay, cx, hn::Mul(ax, cy));
-    const Floats w = hn::NegMulAdd(by, ax, hn::Mul(bx, ay));
-    const Floats pad = hn::Set(d, ray.pad);
-    const Floats slack = hn::Mul(hn::Mul(pad, hn::Set(d, 16)), hn::MulAdd(hn::Set(d, 1.6f), pad, load(9)));
-    const auto outside =
-        hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), hn::Neg(slack)), hn::Gt(hn::Max(u, hn::Max(v, w)), slack));
-    const auto apart = hn::Or(hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray.z_begin)),
-                              hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, ray.z_end)));
-    return hn::Not(hn::Or(outside, apart));
+    return may_hit(FilterRays{set(ray.ox), set(ray.oy), set(ray.oz), set(ray.shear_x), set(ray.shear_y), set(ray.pad),
+                              set(ray.z_begin), set(ray.z_end)},
+                   FilterTriangles{load(ray.x), load(ray.y), load(ray.z), load(3 + ray.x), load(3 + ray.y),
+                                   load(3 + ray.z), load(6 + ray.x), load(6 + ray.y), load(6 + ray.z), load(9)});
 }
 
 /// Rays, one a slot, against the triangles of leaves: a filter in float for up to kLanes triangles at once, then
@@ -166,29 +141,6 @@ private:
     Candidates candidates_;
 };
 
-/// difference_of_products, the same to the bit.
-HWY_INLINE Doubles exact_difference(Doubles a, Doubles d, Doubles b, Doubles c) {
-    const DoubleTag dd;
-    const Doubles ad = hn::Mul(a, d), bc = hn::Mul(b, c);
-    const Doubles difference = hn::Sub(ad, bc);
-    const auto safe = hn::Gt(hn::Abs(difference), hn::Mul(hn::Set(dd, 0x1p-12), hn::Add(hn::Abs(ad), hn::Abs(bc))));
-    if (HWY_LIKELY(hn::AllTrue(dd, safe))) return difference;
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSE4
-    // No fused multiply-add here.
-    constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
-    alignas(16) double as[kDoubles], bs[kDoubles], cs[kDoubles], ds[kDoubles];
-    hn::Store(a, dd, as);
-    hn::Store(b, dd, bs);
-    hn::Store(c, dd, cs);
-    hn::Store(d, dd, ds);
-    for (std::size_t k = 0; k < kDoubles; ++k) as[k] = difference_of_products(as[k], ds[k], bs[k], cs[k]);
-    return hn::Load(dd, as);
-#else
-    const Doubles careful = hn::Add(hn::MulSub(a, d, bc), hn::NegMulAdd(b, c, bc));
-    return hn::IfThenElse(safe, difference, careful);
-#endif
-}
-
 template <typename Accept>
 void TriangleLanes::decide_candidates(const Accept& accept) {
     const DoubleTag dd;
@@ -202,25 +154,16 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
         const auto ray = [&](const double* from) HWY_ATTR { return hn::GatherIndex(dd, from, index); };
         const auto vertex = [&](std::size_t axis)
                                 HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, candidates_.vertex[axis] + i)); };
-        const Doubles ox = ray(block_.turned_origin[0]), oy = ray(block_.turned_origin[1]),
-                      oz = ray(block_.turned_origin[2]);
-        const Doubles sx = ray(block_.shear_x), sy = ray(block_.shear_y);
-        const Doubles az = hn::Sub(vertex(2), oz), bz = hn::Sub(vertex(5), oz), cz = hn::Sub(vertex(8), oz);
-        const auto sheared = [&](std::size_t axis, Doubles o, Doubles shear, Doubles z)
-                                 HWY_ATTR { return hn::Sub(hn::Sub(vertex(axis), o), hn::Mul(shear, z)); };
-        const Doubles ax = sheared(0, ox, sx, az), bx = sheared(3, ox, sx, bz), cx = sheared(6, ox, sx, cz);
-        const Doubles ay = sheared(1, oy, sy, az), by = sheared(4, oy, sy, bz), cy = sheared(7, oy, sy, cz);
-        const Doubles u = exact_difference(cx, by, cy, bx), v = exact_difference(ax, cy, ay, cx),
-                      w = exact_difference(bx, ay, by, ax);
-        const Doubles zero = hn::Zero(dd), determinant = hn::Add(hn::Add(u, v), w);
-        const auto outside = hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), zero), hn::Gt(hn::Max(u, hn::Max(v, w)), zero));
-        const auto hit = hn::AndNot(outside, hn::And(hn::FirstN(dd, candidates_.size - i), hn::Ne(determinant, zero)));
-        const Doubles inverse = hn::Div(hn::Set(dd, 1), determinant);
-        const Doubles depth = hn::Add(hn::Add(hn::Mul(u, az), hn::Mul(v, bz)), hn::Mul(w, cz));
+        const ExactHits hits = intersect(
+            ExactRays{ray(block_.turned_origin[0]), ray(block_.turned_origin[1]), ray(block_.turned_origin[2]),
+                      ray(block_.shear_x), ray(block_.shear_y), ray(block_.inverse_z)},
+            ExactTriangles{vertex(0), vertex(1), vertex(2), vertex(3), vertex(4), vertex(5), vertex(6), vertex(7),
+                           vertex(8)});
+        const auto hit = hn::And(hits.hit, hn::FirstN(dd, candidates_.size - i));
         alignas(64) double t[kDoubles], us[kDoubles], vs[kDoubles];
-        hn::Store(hn::Mul(hn::Mul(depth, inverse), ray(block_.inverse_z)), dd, t);
-        hn::Store(hn::Mul(v, inverse), dd, us);
-        hn::Store(hn::Mul(w, inverse), dd, vs);
+        hn::Store(hits.t, dd, t);
+        hn::Store(hits.u, dd, us);
+        hn::Store(hits.v, dd, vs);
         for (LaneBits bits = bits_of(dd, hit); bits != 0; bits &= bits - 1) {
             const std::size_t k = first_lane(bits);
             const std::uint32_t ray_index = candidates_.ray[i + k];

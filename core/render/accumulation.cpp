@@ -19,6 +19,19 @@ constexpr std::size_t kBatchPaths = 1024;
 /// Paths from lamps that are traced together.
 constexpr std::uint32_t kLightPaths = 4096;
 
+/// Calls use(x, y) for the pixels of a tile, square by square: rays that the kernels take together are close to each other.
+template <typename Tile, typename Use>
+void for_each_pixel(const Tile& tile, const Use& use) {
+    constexpr int kSquare = 4;
+    for (int top = tile.y0; top < tile.y1; top += kSquare) {
+        for (int left = tile.x0; left < tile.x1; left += kSquare) {
+            for (int y = top; y < std::min(top + kSquare, tile.y1); ++y) {
+                for (int x = left; x < std::min(left + kSquare, tile.x1); ++x) use(x, y);
+            }
+        }
+    }
+}
+
 }  // namespace
 
 Accumulation::Accumulation(int width, int height)
@@ -115,12 +128,10 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
         const int end = std::min(samples, tile.samples + samples_at_once);
         batch.ids.clear();
         for (int sample = tile.samples; sample < end; ++sample) {
-            for (int y = tile.y0; y < tile.y1; ++y) {
-                for (int x = tile.x0; x < tile.x1; ++x) {
-                    batch.ids.push_back(
-                        {static_cast<std::uint32_t>(y * film_.width() + x), static_cast<std::uint32_t>(sample)});
-                }
-            }
+            for_each_pixel(tile, [&](int x, int y) {
+                batch.ids.push_back(
+                    {static_cast<std::uint32_t>(y * film_.width() + x), static_cast<std::uint32_t>(sample)});
+            });
         }
         if (!tracer.trace(batch, control.cancelled)) return;
         for (std::size_t i = 0; i < batch.ids.size(); ++i) {

@@ -133,10 +133,37 @@ TEST(KdVersusList, FarFromTheOriginAndAtEveryScale) {
     }
 }
 
+/// Rays in bundles around each of these, of all widths down to none: the kernels take those that stay together together.
+std::vector<Ray> bundles(const std::vector<Ray>& around, std::uint64_t seed) {
+    constexpr int kBundle = 16;
+    Random random(seed);
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+        const float size = glm::length(around[i].direction);
+        const float width = i % 3 == 0 ? 0 : std::ldexp(1.0f, -random.integer(2, 20));
+        for (int k = 0; k < kBundle; ++k) {
+            Ray ray = around[i];
+            ray.origin += random.in_cube(width);
+            ray.direction += size * random.in_cube(width);
+            if (k % 5 == 4) ray.t_max = random.uniform(0, 3);
+            if (ray.direction != Vec3(0)) rays.push_back(ray);
+        }
+    }
+    return rays;
+}
+
+TEST(KdVersusList, RaysThatStayTogether) {
+    for (std::uint64_t seed = 60; seed < 70; ++seed) {
+        const auto instances = make_scene(seed, static_cast<int>(1 + 5 * (seed % 8)), 120);
+        expect_same_as_list(instances, bundles(make_rays(instances, 120, seed), seed), {1, 6, 16, 200});
+    }
+}
+
 /// SSE2 to AVX-512, whatever this machine has.
 TEST(KdVersusList, EachInstructionSetGivesTheSame) {
     const auto instances = make_scene(41, 20, 300);
-    const auto rays = make_rays(instances, 3000, 42);
+    std::vector<Ray> rays = make_rays(instances, 2000, 42);
+    for (const Ray& ray : bundles(make_rays(instances, 100, 43), 44)) rays.push_back(ray);
     const std::int64_t supported = hwy::SupportedTargets();
     int sets = 0;
     for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {

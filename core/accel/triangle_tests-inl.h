@@ -1,0 +1,117 @@
+// Compiled once for each set of instructions (Google Highway), hence no plain include guard.
+#if defined(RAYUELA_CORE_ACCEL_TRIANGLE_TESTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYUELA_CORE_ACCEL_TRIANGLE_TESTS_INL_H_
+#undef RAYUELA_CORE_ACCEL_TRIANGLE_TESTS_INL_H_
+#else
+#define RAYUELA_CORE_ACCEL_TRIANGLE_TESTS_INL_H_
+#endif
+
+#include "core/shapes/intersect_triangle.h"
+
+#include "core/accel/kd_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+/// Rays, or one ray in all lanes, in the turn of the axes that RayBlock describes.
+struct FilterRays {
+    Floats ox, oy, oz, shear_x, shear_y, pad;
+    Floats z_begin, z_end;  ///< The depths, from the origin along z, between which a hit counts.
+};
+
+/// Triangles, or one triangle in all lanes, in the same turn.
+struct FilterTriangles {
+    Floats ax, ay, az, bx, by, bz, cx, cy, cz;
+    Floats extent;  ///< The largest along an axis.
+};
+
+/// False only for triangles that the exact test rejects. With u the unit roundoff and R = |origin| + |bounds|, the sheared
+/// vertices are right within 8uR; those of a triangle of extent E that is hit are below 2E; so its edge functions are right
+/// within 128uR(E + uR), which is less than 16 pad (E + 1.6 pad). A hit's depth lies between those of the vertices, which are
+/// right within pad. That holds with and without fma.
+HWY_INLINE FloatMask may_hit(const FilterRays& ray, const FilterTriangles& triangle) {
+    const FloatTag d;
+    const Floats az = triangle.az - ray.oz, bz = triangle.bz - ray.oz, cz = triangle.cz - ray.oz;
+    const Floats ax = hn::NegMulAdd(ray.shear_x, az, triangle.ax - ray.ox),
+                 ay = hn::NegMulAdd(ray.shear_y, az, triangle.ay - ray.oy);
+    const Floats bx = hn::NegMulAdd(ray.shear_x, bz, triangle.bx - ray.ox),
+                 by = hn::NegMulAdd(ray.shear_y, bz, triangle.by - ray.oy);
+    const Floats cx = hn::NegMulAdd(ray.shear_x, cz, triangle.cx - ray.ox),
+                 cy = hn::NegMulAdd(ray.shear_y, cz, triangle.cy - ray.oy);
+    const Floats u = hn::NegMulAdd(cy, bx, cx * by);
+    const Floats v = hn::NegMulAdd(ay, cx, ax * cy);
+    const Floats w = hn::NegMulAdd(by, ax, bx * ay);
+    const Floats slack = ray.pad * hn::Set(d, 16) * hn::MulAdd(hn::Set(d, 1.6f), ray.pad, triangle.extent);
+    const auto outside =
+        hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), hn::Neg(slack)), hn::Gt(hn::Max(u, hn::Max(v, w)), slack));
+    const auto apart =
+        hn::Or(hn::Lt(hn::Max(az, hn::Max(bz, cz)), ray.z_begin), hn::Gt(hn::Min(az, hn::Min(bz, cz)), ray.z_end));
+    return hn::Not(hn::Or(outside, apart));
+}
+
+/// The depths between which hits of a ray with t between t_min and t_max lie, where its direction has this depth.
+HWY_INLINE void depth_range(float depth, float pad, float t_min, float t_max, float& z_begin, float& z_end) {
+    const float from = depth * t_min, to = depth * t_max;
+    constexpr float kRounding = 4 * kUnitRoundoff;
+    z_begin = std::min(from, to);
+    z_end = std::max(from, to);
+    z_begin -= pad + kRounding * std::fabs(z_begin);
+    z_end += pad + kRounding * std::fabs(z_end);
+}
+
+/// difference_of_products, the same to the bit.
+HWY_INLINE Doubles exact_difference(Doubles a, Doubles d, Doubles b, Doubles c) {
+    const DoubleTag dd;
+    const Doubles ad = hn::Mul(a, d), bc = hn::Mul(b, c);
+    const Doubles difference = hn::Sub(ad, bc);
+    const auto safe = hn::Gt(hn::Abs(difference), hn::Mul(hn::Set(dd, 0x1p-12), hn::Add(hn::Abs(ad), hn::Abs(bc))));
+    if (HWY_LIKELY(hn::AllTrue(dd, safe))) return difference;
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSE4
+    // No fused multiply-add here.
+    constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
+    alignas(16) double as[kDoubles], bs[kDoubles], cs[kDoubles], ds[kDoubles];
+    hn::Store(a, dd, as);
+    hn::Store(b, dd, bs);
+    hn::Store(c, dd, cs);
+    hn::Store(d, dd, ds);
+    for (std::size_t k = 0; k < kDoubles; ++k) as[k] = difference_of_products(as[k], ds[k], bs[k], cs[k]);
+    return hn::Load(dd, as);
+#else
+    const Doubles careful = hn::Add(hn::MulSub(a, d, bc), hn::NegMulAdd(b, c, bc));
+    return hn::IfThenElse(safe, difference, careful);
+#endif
+}
+
+/// As FilterRays and FilterTriangles.
+struct ExactRays {
+    Doubles ox, oy, oz, shear_x, shear_y, inverse_z;
+};
+struct ExactTriangles {
+    Doubles ax, ay, az, bx, by, bz, cx, cy, cz;
+};
+struct ExactHits {
+    hn::Mask<DoubleTag> hit;
+    Doubles t, u, v;  ///< Not yet rounded.
+};
+
+/// intersect_triangle, the same to the bit, but for the range of t.
+HWY_INLINE ExactHits intersect(const ExactRays& ray, const ExactTriangles& triangle) {
+    const DoubleTag dd;
+    const Doubles az = triangle.az - ray.oz, bz = triangle.bz - ray.oz, cz = triangle.cz - ray.oz;
+    const Doubles ax = triangle.ax - ray.ox - ray.shear_x * az, bx = triangle.bx - ray.ox - ray.shear_x * bz,
+                  cx = triangle.cx - ray.ox - ray.shear_x * cz;
+    const Doubles ay = triangle.ay - ray.oy - ray.shear_y * az, by = triangle.by - ray.oy - ray.shear_y * bz,
+                  cy = triangle.cy - ray.oy - ray.shear_y * cz;
+    const Doubles u = exact_difference(cx, by, cy, bx), v = exact_difference(ax, cy, ay, cx),
+                  w = exact_difference(bx, ay, by, ax);
+    const Doubles zero = hn::Zero(dd), determinant = u + v + w;
+    const auto outside = hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), zero), hn::Gt(hn::Max(u, hn::Max(v, w)), zero));
+    const Doubles inverse = hn::Set(dd, 1) / determinant;
+    const Doubles depth = u * az + v * bz + w * cz;
+    return {hn::AndNot(outside, hn::Ne(determinant, zero)), depth * inverse * ray.inverse_z, v * inverse, w * inverse};
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
