@@ -41,6 +41,12 @@ LightEmission::LightEmission(std::shared_ptr<const LightTable> table, std::vecto
     choice_ = AliasTable(weights);
 }
 
+LightEmission LightEmission::renumbered(std::shared_ptr<const LightTable> table) const {
+    LightEmission emission = *this;
+    emission.table_ = std::move(table);
+    return emission;
+}
+
 std::optional<EmittedRay> LightEmission::sample(float u_light, const Vec2& u_point, float u_target,
                                                 const Vec2& u_direction) const {
     const AliasTable::Draw draw = choice_.draw(u_light);

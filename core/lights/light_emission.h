@@ -27,6 +27,9 @@ public:
     /// Many targets are gathered into few. Empty when there are none, or no light shines towards them.
     LightEmission(std::shared_ptr<const LightTable> table, std::vector<Ball> targets);
 
+    /// The same, where the objects of the table have other numbers, see LightTable::renumbered.
+    LightEmission renumbered(std::shared_ptr<const LightTable> table) const;
+
     const Targets& targets() const { return targets_; }
     bool empty() const { return choice_.empty(); }
     /// The share of the directions around a target in which a lamp lies, so the chance that a path scattered by one finds a

@@ -32,6 +32,15 @@ LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<co
     environment_probability_ = lights_.empty() ? 1.0f : 0.5f;
 }
 
+LightTable LightTable::renumbered(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to,
+                                  std::size_t objects) const {
+    LightTable table = *this;
+    if (first_light_.empty()) return table;
+    table.first_light_.assign(objects, kNone);
+    for (std::size_t i = 0; i < from.size(); ++i) table.first_light_[to[i]] = first_light_[from[i]];
+    return table;
+}
+
 std::optional<LightSample> LightTable::sample(const LightReceiver& receiver, const Vec2& u) const {
     if (u.x < environment_probability_) return sample_environment({u.x / environment_probability_, u.y});
     const float rest = (u.x - environment_probability_) / (1 - environment_probability_);

@@ -26,6 +26,10 @@ public:
     LightTable(std::span<const GeometryInstance> instances, std::span<const Material* const> materials,
                const Environment& environment);
 
+    /// The same lights, where the object that had number from[i] has number to[i] now, of `objects` in all.
+    LightTable renumbered(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to,
+                          std::size_t objects) const;
+
     /// Whether there is nothing to sample: then `sample` must not be called, and the table owns no memory.
     bool empty() const { return lights_.empty() && !environment_; }
 

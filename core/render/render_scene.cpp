@@ -180,28 +180,37 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
     }
     if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);
     const bool may_shine = materials || objects || changes.environment;
-    if (may_shine) next->update_lights(previous);
+    const bool same_lights = !may_shine || next->update_lights(previous);
     next->features_ = next->find_features();
-    if (may_shine) next->update_emission(previous);
+    if (may_shine) next->update_emission(previous, same_lights);
     return next;
 }
 
-/// Unless they are those of `previous`, which may be null.
-void RenderScene::update_lights(const RenderScene* previous) {
+/// Whether the lights are those of `previous` (may be null), but for the numbers of their objects.
+bool RenderScene::update_lights(const RenderScene* previous) {
     const bool panorama = environment_.image() || (previous && previous->environment_.image());
     const bool sky = previous && panorama && scene_->environment != previous->scene_->environment;
-    if (!previous || sky || !same_lamps(*previous)) {
+    const bool same = previous && !sky && same_lamps(*previous);
+    if (!same) {
         std::vector<const Material*> of_instances;
         for (const FlatObject& object : *objects_) of_instances.push_back(&(*materials_)[object.material].material);
         lights_ = std::make_shared<const LightTable>(accelerator_->instances(), of_instances, scene_->environment);
+        return false;
     }
+    const std::vector<std::uint32_t> from = previous->objects_with(&PackedMaterial::emissive);
+    const std::vector<std::uint32_t> to = objects_with(&PackedMaterial::emissive);
+    if (from != to) lights_ = std::make_shared<const LightTable>(lights_->renumbered(from, to, objects_->size()));
+    return true;
 }
 
-/// Unless it is that of `previous`, which may be null.
-void RenderScene::update_emission(const RenderScene* previous) {
-    const bool same = previous && lights_ == previous->lights_ && same_targets(*previous) &&
+void RenderScene::update_emission(const RenderScene* previous, bool same_lights) {
+    const bool same = previous && same_lights && same_targets(*previous) &&
                       features_.light_sampling() == previous->features_.light_sampling();
-    if (!same) emission_ = find_emission();
+    if (!same) {
+        emission_ = find_emission();
+    } else if (emission_ && lights_ != previous->lights_) {
+        emission_ = std::make_shared<const LightEmission>(emission_->renumbered(lights_));
+    }
 }
 
 std::vector<std::uint32_t> RenderScene::objects_with(bool PackedMaterial::*property) const {
@@ -212,13 +221,13 @@ std::vector<std::uint32_t> RenderScene::objects_with(bool PackedMaterial::*prope
     return found;
 }
 
-/// Whether the same lamps stand at the same places, by the same numbers.
+/// Whether the same lamps stand at the same places.
 bool RenderScene::same_lamps(const RenderScene& other) const {
-    const std::vector<std::uint32_t> lamps = objects_with(&PackedMaterial::emissive);
-    return lamps == other.objects_with(&PackedMaterial::emissive) && std::ranges::all_of(lamps, [&](std::uint32_t i) {
-               return accelerator_->instances()[i] == other.accelerator_->instances()[i] &&
-                      material(i) == other.material(i);
-           });
+    return std::ranges::equal(objects_with(&PackedMaterial::emissive), other.objects_with(&PackedMaterial::emissive),
+                              [&](std::uint32_t i, std::uint32_t j) {
+                                  return accelerator_->instances()[i] == other.accelerator_->instances()[j] &&
+                                         material(i) == other.material(j);
+                              });
 }
 
 /// Whether the same mirrors and glass stand at the same places.

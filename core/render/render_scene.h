@@ -68,8 +68,8 @@ private:
     using PackedMaterials = std::vector<PackedMaterial>;
 
     void flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const;
-    void update_lights(const RenderScene* previous);
-    void update_emission(const RenderScene* previous);
+    bool update_lights(const RenderScene* previous);
+    void update_emission(const RenderScene* previous, bool same_lights);
     std::vector<std::uint32_t> objects_with(bool PackedMaterial::*property) const;
     bool same_lamps(const RenderScene& other) const;
     bool same_targets(const RenderScene& other) const;
