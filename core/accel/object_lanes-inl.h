@@ -169,10 +169,13 @@ public:
         packet_.test(runs, leaf.triangles, mask_of(lanes),
                      [&](std::size_t lane, std::size_t i, float t, float u, float v)
                          HWY_ATTR { keep_triangle(first_ + lane, leaf.first_triangle + i, {.t = t, .u = u, .v = v}); });
-        for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
-            add_spheres(first_lane(rest), leaf);
-            test_others(block_.id[first_ + first_lane(rest)], leaf);
+        const float* const spheres = leaves_.sphere_runs.data() + 4 * leaf.first_sphere;
+        for (std::size_t i = 0; i < leaf.spheres; ++i) {
+            const std::uint32_t name = leaves_.spheres[leaf.first_sphere + i];
+            if (spheres_.add_to_packet(mask_of(lanes), spheres, leaf.spheres, i, name)) decide_spheres();
         }
+        for (LaneBits rest = leaf.others > 0 ? lanes : 0; rest != 0; rest &= rest - 1)
+            test_others(block_.id[first_ + first_lane(rest)], leaf);
         decide_spheres();
         for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
             go_on<kQuery>(first_lane(rest), first_ + first_lane(rest), block_, rays_, hits_, packet,

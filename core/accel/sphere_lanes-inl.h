@@ -13,49 +13,37 @@
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
-/// A ray as the float test of spheres wants it.
-struct SphereFilter {
-    float ox, oy, oz;     ///< Origin.
-    float nx, ny, nz;     ///< Unit direction.
-    float pad;            ///< RayBlock::pad.
-    float length, t_min;  ///< Of the direction; of the ray.
-    float begin, end;     ///< Distances from the origin between which a hit counts.
+/// Rays, or one ray in all lanes.
+struct SphereFilterRays {
+    Floats ox, oy, oz;  ///< Origin.
+    Floats nx, ny, nz;  ///< Unit direction.
+    Floats pad;         ///< RayBlock::pad.
+    Floats begin, end;  ///< Distances from the origin between which a hit counts.
+};
 
-    HWY_INLINE static SphereFilter of(const Ray& ray, float pad, float t_max) {
-        const Vec3d d(ray.direction);
-        const double length = glm::length(d);
-        const Vec3 n(d / length);
-        SphereFilter filter{
-            ray.origin.x, ray.origin.y, ray.origin.z, n.x, n.y, n.z, pad, static_cast<float>(length), ray.t_min, 0, 0};
-        filter.set_end(t_max);
-        return filter;
-    }
-    HWY_INLINE void set_end(float t_max) {
-        begin = length * t_min * (1 - 4 * kUnitRoundoff);
-        end = length * t_max * (1 + 4 * kUnitRoundoff);
-    }
+/// Spheres, or one sphere in all lanes.
+struct FilterSpheres {
+    Floats x, y, z, radius;
 };
 
 /// False only for spheres that the exact test rejects. With R = |origin| + |bounds| the way from the ray's line to the centre
 /// is right within 40uR (rounding of ray and sphere to float, and 8 operations on numbers below 2R): less than 8 pad.
-HWY_INLINE FloatMask may_hit(const SphereFilter& ray, const float* runs, std::size_t n) {
+HWY_INLINE FloatMask may_hit(const SphereFilterRays& ray, const FilterSpheres& sphere) {
     const FloatTag d;
-    const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
-    const Floats x = hn::Sub(hn::LoadU(d, runs), set(ray.ox)), y = hn::Sub(hn::LoadU(d, runs + n), set(ray.oy)),
-                 z = hn::Sub(hn::LoadU(d, runs + 2 * n), set(ray.oz));
-    const Floats reach = hn::Add(hn::LoadU(d, runs + 3 * n), set(8 * ray.pad));
-    const Floats along = hn::MulAdd(z, set(ray.nz), hn::MulAdd(y, set(ray.ny), hn::Mul(x, set(ray.nx))));
-    const Floats px = hn::NegMulAdd(along, set(ray.nx), x), py = hn::NegMulAdd(along, set(ray.ny), y),
-                 pz = hn::NegMulAdd(along, set(ray.nz), z);
-    const Floats squared = hn::MulAdd(pz, pz, hn::MulAdd(py, py, hn::Mul(px, px)));
-    const auto near = hn::Le(squared, hn::Mul(hn::Mul(reach, reach), set(1 + 16 * kUnitRoundoff)));
-    const auto within =
-        hn::And(hn::Ge(hn::Add(along, reach), set(ray.begin)), hn::Le(hn::Sub(along, reach), set(ray.end)));
+    const Floats x = sphere.x - ray.ox, y = sphere.y - ray.oy, z = sphere.z - ray.oz;
+    const Floats reach = sphere.radius + hn::Set(d, 8) * ray.pad;
+    const Floats along = hn::MulAdd(z, ray.nz, hn::MulAdd(y, ray.ny, x * ray.nx));
+    const Floats px = hn::NegMulAdd(along, ray.nx, x), py = hn::NegMulAdd(along, ray.ny, y),
+                 pz = hn::NegMulAdd(along, ray.nz, z);
+    const Floats squared = hn::MulAdd(pz, pz, hn::MulAdd(py, py, px * px));
+    const auto near = hn::Le(squared, reach * reach * hn::Set(d, 1 + 16 * kUnitRoundoff));
+    const auto within = hn::And(hn::Ge(along + reach, ray.begin), hn::Le(along - reach, ray.end));
     return hn::And(near, within);
 }
 
-/// Rays, one a slot, against the spheres of leaves: a filter in float for up to kLanes spheres at once, then intersect_sphere,
-/// the same to the bit, for what is left of many rays at once. For the world: the block's rays are those of the batch.
+/// Rays, one a slot, against the spheres of leaves: a filter in float for up to kLanes spheres at once, or of one sphere for
+/// all rays of a packet, then intersect_sphere, the same to the bit, for what is left of many rays at once. For the world: the
+/// block's rays are those of the batch.
 class SphereLanes {
 public:
     SphereLanes(const RayBlock& block, std::span<const Ray> rays, const SphereD* spheres)
@@ -63,18 +51,45 @@ public:
 
     HWY_INLINE void start(std::size_t slot, std::size_t i, float t_max) {
         ray_of_slot_[slot] = static_cast<std::uint32_t>(i);
-        filter_[slot] = SphereFilter::of(rays_[block_.id[i]], block_.pad[i], t_max);
+        const Ray& ray = rays_[block_.id[i]];
+        const Vec3d d(ray.direction);
+        const double length = glm::length(d);
+        const Vec3 n(d / length);
+        for (int axis = 0; axis < 3; ++axis) {
+            origin_[axis][slot] = ray.origin[axis];
+            direction_[axis][slot] = n[axis];
+        }
+        pad_[slot] = block_.pad[i];
+        length_[slot] = static_cast<float>(length);
+        begin_[slot] = length_[slot] * ray.t_min * (1 - 4 * kUnitRoundoff);
+        set_end(slot, t_max);
     }
-    HWY_INLINE void set_end(std::size_t slot, float t_max) { filter_[slot].set_end(t_max); }
+    HWY_INLINE void set_end(std::size_t slot, float t_max) {
+        end_[slot] = length_[slot] * t_max * (1 + 4 * kUnitRoundoff);
+    }
 
     /// Spheres i to i + kLanes of the n of a leaf; names[k] is the object that sphere k is. True when `decide` must be
     /// called before the next.
     HWY_INLINE bool add(std::size_t slot, const float* runs, std::size_t n, std::size_t i, const std::uint32_t* names) {
         const FloatTag d;
-        const FloatMask hit = hn::And(may_hit(filter_[slot], runs + i, n), hn::FirstN(d, n - i));
-        for (LaneBits bits = bits_of(d, hit); bits != 0; bits &= bits - 1) {
+        const auto set = [&](const float* values) HWY_ATTR { return hn::Set(d, values[slot]); };
+        const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n + i); };
+        const FloatMask hit = may_hit(rays(set), FilterSpheres{load(0), load(1), load(2), load(3)});
+        for (LaneBits bits = bits_of(d, hn::And(hit, hn::FirstN(d, n - i))); bits != 0; bits &= bits - 1) {
             ray_[size_] = ray_of_slot_[slot];
             name_[size_++] = names[i + first_lane(bits)];
+        }
+        return size_ > kCapacity - kLanes;
+    }
+    /// Sphere i of the n of a leaf for the rays in slots 0 to kLanes that are in `here`. True as above.
+    HWY_INLINE bool add_to_packet(FloatMask here, const float* runs, std::size_t n, std::size_t i, std::uint32_t name) {
+        const FloatTag d;
+        const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
+        const auto set = [&](std::size_t run) HWY_ATTR { return hn::Set(d, runs[run * n + i]); };
+        const FloatMask hit = hn::And(here, may_hit(rays(load), FilterSpheres{set(0), set(1), set(2), set(3)}));
+        for (LaneBits bits = bits_of(d, hit); bits != 0; bits &= bits - 1) {
+            ray_[size_] = ray_of_slot_[first_lane(bits)];
+            name_[size_++] = name;
         }
         return size_ > kCapacity - kLanes;
     }
@@ -100,11 +115,19 @@ private:
         return hn::Load(dd, values);
     }
 
+    template <typename Take>
+    HWY_INLINE SphereFilterRays rays(const Take& take) const {
+        return {take(origin_[0]),    take(origin_[1]), take(origin_[2]), take(direction_[0]), take(direction_[1]),
+                take(direction_[2]), take(pad_),       take(begin_),     take(end_)};
+    }
+
     const RayBlock& block_;
     std::span<const Ray> rays_;
     const SphereD* spheres_;
     std::uint32_t ray_of_slot_[kSlots];  ///< In the block.
-    SphereFilter filter_[kSlots];
+    alignas(64) float origin_[3][kSlots] = {}, direction_[3][kSlots] = {};
+    alignas(64) float pad_[kSlots] = {}, begin_[kSlots] = {}, end_[kSlots] = {};
+    float length_[kSlots] = {};
     std::uint32_t ray_[kCapacity + 16] = {}, name_[kCapacity + 16] = {};
     std::size_t size_ = 0;
 };
