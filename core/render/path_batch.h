@@ -51,7 +51,8 @@ struct PathBatch {
     std::vector<Color> radiance;              ///< The result.
     std::vector<std::uint32_t> first_object;  ///< Hit::object of the camera ray.
 
-    std::vector<Sampler> samplers;  ///< One a path, then those of the parts of split paths.
+    std::vector<Vec2> filter_numbers, lens_numbers;  ///< Of the camera.
+    std::vector<Sampler> samplers;                   ///< One a path, then those of the parts of split paths.
 
     // One a path still on its way, in the order of the paths.
     std::vector<PathState> states, next_states;

@@ -1,5 +1,6 @@
 #include "core/render/path_tracer.h"
 
+#include "core/math/sampler_batch.h"
 #include "core/math/sampling.h"
 #include "core/render/aimed_bsdf.h"
 #include "core/render/interaction.h"
@@ -91,13 +92,18 @@ void PathTracer::camera_rays(PathBatch& batch) const {
     batch.rays.resize(n);
     batch.radiance.assign(n, Color(0));
     batch.first_object.assign(n, kNone);
+    batch.filter_numbers.resize(n);
+    batch.lens_numbers.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+        batch.samplers[i] = Sampler(settings.sampler, settings.seed, batch.ids[i].pixel, batch.ids[i].sample);
+    draw_2d(batch.samplers, kFilter, batch.filter_numbers);
+    if (scene_.features().lens) draw_2d(batch.samplers, kLens, batch.lens_numbers);
     for (std::size_t i = 0; i < n; ++i) {
-        const auto [pixel, sample] = batch.ids[i];
-        const Sampler& sampler = batch.samplers[i] = Sampler(settings.sampler, settings.seed, pixel, sample);
+        const std::uint32_t pixel = batch.ids[i].pixel;
         const auto width = static_cast<std::uint32_t>(width_);
         const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
-        const Vec2 position = (centre + sample_filter(filter, sampler.get_2d(kFilter))) * pixel_size;
-        const Vec2 lens = scene_.features().lens ? sample_concentric_disk(sampler.get_2d(kLens)) : Vec2(0);
+        const Vec2 position = (centre + sample_filter(filter, batch.filter_numbers[i])) * pixel_size;
+        const Vec2 lens = scene_.features().lens ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
         batch.states[i] = {.path = static_cast<std::uint32_t>(i), .sampler = static_cast<std::uint32_t>(i)};
         batch.rays[i] = camera_.ray(position, lens);
     }

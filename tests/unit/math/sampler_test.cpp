@@ -1,5 +1,6 @@
 #include "core/math/sampler.h"
 
+#include "core/math/sampler_batch.h"
 #include "tests/statistics.h"
 
 #include <gtest/gtest.h>
@@ -196,6 +197,18 @@ TEST(Sampler, IntegrationError) {
     }
     EXPECT_LT(rms(SamplerKind::sobol, 64), 0.08 * sigma / 8);
     EXPECT_LT(rms(SamplerKind::sobol, 100), 0.2 * sigma / 10) << "between powers of two as well";
+}
+
+TEST(Sampler, ManyAtOnceDrawTheSame) {
+    for (const SamplerKind kind : kKinds) {
+        for (const std::uint32_t dimension : {0u, 1u, 3u, 4u, 18u, 1000003u}) {
+            std::vector<Sampler> samplers;
+            for (std::uint32_t i = 0; i < 77; ++i) samplers.emplace_back(kind, 5, i % 3, i < 70 ? i * i : ~i);
+            std::vector<Vec2> numbers(samplers.size());
+            draw_2d(samplers, dimension, numbers);
+            for (std::size_t i = 0; i < samplers.size(); ++i) EXPECT_EQ(numbers[i], samplers[i].get_2d(dimension));
+        }
+    }
 }
 
 TEST(Sampler, DifferentSamplesDiffer) {

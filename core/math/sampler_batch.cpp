@@ -1,0 +1,49 @@
+#include "core/math/sampler_batch.h"
+
+#include <algorithm>
+
+// The kernels need no more than these.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/math/sampler_batch.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/math/sampler_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+HWY_ATTR void draw_pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
+    const FloatTag d;
+    alignas(64) std::uint32_t key_0[kLanes] = {}, key_1[kLanes] = {}, reversed_index[kLanes] = {};
+    alignas(64) float x[kLanes], y[kLanes];
+    for (std::size_t first = 0; first < samplers.size(); first += kLanes) {
+        const std::size_t n = std::min(kLanes, samplers.size() - first);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Sampler& sampler = samplers[first + i];
+            key_0[i] = sampler.key()[0];
+            key_1[i] = sampler.key()[1];
+            reversed_index[i] = sampler.reversed_index();
+        }
+        const Vec2Lanes u = SamplerLanes(samplers[0].kind(), key_0, key_1, reversed_index).get_2d(dimension);
+        hn::Store(u.x, d, x);
+        hn::Store(u.y, d, y);
+        for (std::size_t i = 0; i < n; ++i) numbers[first + i] = {x[i], y[i]};
+    }
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rayuela {
+
+HWY_EXPORT(draw_pairs);
+
+void draw_2d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
+    HWY_DYNAMIC_DISPATCH(draw_pairs)(samplers, dimension, numbers);
+}
+
+}  // namespace rayuela
+#endif

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/math/sampler.h"
+
+#include <span>
+
+namespace rayuela {
+
+/// numbers[i] becomes samplers[i].get_2d(dimension), many at once. All samplers are of one kind.
+void draw_2d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers);
+
+}  // namespace rayuela
