@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/materials/value.h"
+#include "core/math/sampling.h"
 #include "core/math/vec.h"
 
 #include <cmath>
@@ -54,10 +55,9 @@ struct Ggx {
     /// A normal that wo sees, by a spherical cap. Dupuy & Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
     Vec3 sample_visible(const Vec3& wo, const Vec2& u) const {
         const Vec3 stretched = glm::normalize(Vec3(alpha * wo.x, alpha * wo.y, wo.z));
-        const float phi = 2 * kPi * u.x;
         const float z = (1 - u.y) * (1 + stretched.z) - stretched.z;
         const float sine = std::sqrt(std::fmax(1 - z * z, 0.0f));
-        const Vec3 h = Vec3(sine * std::cos(phi), sine * std::sin(phi), z) + stretched;
+        const Vec3 h = Vec3(sine * cos_sin_turns(u.x), z) + stretched;
         return glm::normalize(Vec3(alpha * h.x, alpha * h.y, std::fmax(h.z, 0.0f)));
     }
 };

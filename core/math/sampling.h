@@ -38,16 +38,21 @@ inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
     return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y))};
 }
 
-/// The direction at azimuth `phi` whose polar angle has this cosine and sine.
-inline Vec3 spherical_direction(float cos_theta, float sin_theta, float phi) {
-    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
+/// (cos, sin) of the angle that is `turns`, in [0, 1], of the full one.
+inline Vec2 cos_sin_turns(float turns) {
+    const float quarter = std::floor(4 * turns + 0.5f);
+    const Vec2 w = cos_sin_octant(2 * kPi * (turns - 0.25f * quarter));
+    const int quarters = static_cast<int>(quarter) % 4;
+    const Vec2 across = quarters % 2 == 0 ? w : Vec2(-w.y, w.x);
+    return quarters < 2 ? across : -across;
 }
 
 /// Within the cone about +z of 1 - cos(half angle) = `one_minus_cos`, in (0, 2]: 2 is the sphere, 1 the hemisphere. Written
 /// so that tiny cones keep their precision.
 inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
     const float x = u.x * one_minus_cos;
-    return spherical_direction(1 - x, std::sqrt(std::max(0.0f, x * (2 - x))), 2 * kPi * u.y);
+    const float sine = std::sqrt(std::max(0.0f, x * (2 - x)));
+    return Vec3(sine * cos_sin_turns(u.y), 1 - x);
 }
 
 inline float uniform_cone_pdf(float one_minus_cos) {

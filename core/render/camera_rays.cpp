@@ -1,6 +1,7 @@
 #include "core/render/camera_rays.h"
 
 #include "core/math/frame.h"
+#include "core/math/sampling.h"
 
 #include <cmath>
 
@@ -92,8 +93,7 @@ Vec2 sample_filter(PixelFilter filter, const Vec2& u) {
     }
     // Box & Muller in polar form, the radius by inversion of its distribution cut at kGaussianRadius.
     const float radius = kSigma * std::sqrt(-2 * std::log(1 - u.x * gaussian_mass()));
-    const float angle = 2 * kPi * u.y;
-    return radius * Vec2(std::cos(angle), std::sin(angle));
+    return radius * cos_sin_turns(u.y);
 }
 
 float filter_radius(PixelFilter filter) {

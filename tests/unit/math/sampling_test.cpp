@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace rayuela {
 namespace {
@@ -31,6 +33,16 @@ double p_value(const std::function<Vec2(const Vec2&)>& cell) {
 
 float azimuth(const Vec3& w) {
     return std::atan2(w.y, w.x) / (2 * kPi) + 0.5f;
+}
+
+TEST(Sampling, CosineAndSineOfTurnsAreRightToTheLastBitButOne) {
+    for (int i = 0; i <= 1 << 16; ++i) {
+        const float turns = std::ldexp(static_cast<float>(i), -16);
+        const Vec2 w = cos_sin_turns(turns);
+        const double angle = 2 * std::numbers::pi * turns;
+        EXPECT_NEAR(w.x, std::cos(angle), 1.5e-7) << turns;
+        EXPECT_NEAR(w.y, std::sin(angle), 1.5e-7) << turns;
+    }
 }
 
 TEST(Sampling, DensitiesAreWhatTheyClaim) {
