@@ -148,6 +148,7 @@ HWY_INLINE FloatMask scattered_paths(const MatteTask& task, const InteractionLan
     }
     store(at.ray_origin(wi), block.next_origin, i);
     store(wi, block.next_direction, i);
+    store(wi_local, block.next_local, i);
     store(throughput, block.next_throughput, i);
     store(pdf, block.next_pdf, i);
     return goes_on;

@@ -34,6 +34,7 @@ struct MatteBlock {
     // Found.
     Rows shadow_origin, shadow_direction, shadow_light;
     Rows next_origin, next_direction, next_throughput;
+    Rows next_local;  ///< The direction in the frame of the shading normal.
     Row next_pdf;
     std::uint64_t casts_shadow_ray, goes_on;  ///< One bit a path.
 };

@@ -65,7 +65,6 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       light_sampling_(options.light_sampling && scene.features().light_sampling()) {
     if (options.light_tracing && options.light_sampling && scene.emission())
         light_tracer_.emplace(scene, camera_, width, height);
-    matte_blocks_ = options.matte_blocks && !light_tracer_;
 }
 
 bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
@@ -144,7 +143,9 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
-        if (matte_blocks_ && material.matte) {
+        // Where a lamp's path cannot be the same as this one, all caustics are left to it.
+        const bool aims = light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;
+        if (options_.matte_blocks && material.matte && !aims) {
             if (!last) add_matte(batch, i, *material.matte, bounce);
             continue;
         }
@@ -152,8 +153,6 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         batch.counts.textured_hits += material.textured;
         if (material.emissive) batch.radiance[state.path] += emitted_light(state, ray, hit, at);
         if (last) continue;
-        // Where a lamp's path cannot be the same as this one, all caustics are left to it.
-        const bool aims = light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;
         const AimedBsdf bsdf(at, aims ? &scene_.emission()->targets() : nullptr);
         if (light_sampling_ && material.smooth) sample_light(batch, state, at, bsdf, bounce);
         if (bsdf.aims() && state.bsdf_pdf == 0 && state.sampler == state.path) {

@@ -75,7 +75,6 @@ private:
     int rr_start_;
     bool light_sampling_;
     std::optional<LightTracer> light_tracer_;
-    bool matte_blocks_;
 };
 
 /// Replays one sample of the scene's film: the same stages on a batch of one, the same radiance to the last bit. What the

@@ -1,3 +1,4 @@
+#include "core/render/interaction.h"
 #include "core/render/path_tracer.h"
 
 #include <bit>
@@ -77,7 +78,14 @@ void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
     }
     for (std::uint64_t rest = block.goes_on; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        PathState& state = batch.next_states.emplace_back(batch.states[batch.matte_states[i]]);
+        const std::size_t from = batch.matte_states[i];
+        PathState& state = batch.next_states.emplace_back(batch.states[from]);
+        if (light_tracer_) {
+            const Ray& ray = batch.rays[from];
+            const Interaction at(batch.points[from], scene_.packed_material(batch.hits[from].object), -ray.direction);
+            const BsdfSample sample{.wi = vec(block.next_local, i), .pdf = block.next_pdf[i]};
+            state.light_ratio = light_ratio(state, ray, at, vec(block.next_direction, i), sample, bounce);
+        }
         state.throughput = vec(block.next_throughput, i);
         state.receiver = {vec(block.p, i), vec(block.receiver_n, i)};
         state.bsdf_pdf = block.next_pdf[i];

@@ -33,6 +33,12 @@ const Case kCases[] = {
          scene.environment = ConstantEnvironment{Color(0.2f)};
          add_object(scene, Triangle{{Vec3(-2, 3, -1), Vec3(0, 3, 1), Vec3(2, 3.5f, -1)}}, lamp);
      }},
+    {"caustics of a small lamp",
+     [](Scene& scene, MaterialId lamp) {
+         add_object(scene, Sphere{Vec3(-1, 2.6f, 2), 0.1f}, lamp);
+         add_object(scene, Sphere{Vec3(0.2f, 0.5f, 1.6f), 0.5f}, add_material(scene, Dielectric{}));
+         add_object(scene, Sphere{Vec3(1.6f, 0.5f, 1.8f), 0.5f}, add_material(scene, Metal{}));
+     }},
     {"sphere lamp",
      [](Scene& scene, MaterialId lamp) {
          add_object(scene, Sphere{Vec3(0.5f, 2.2f, 0.5f), 0.5f}, lamp);
