@@ -13,7 +13,8 @@ namespace {
 
 class RayMaker {
 public:
-    RayMaker(const Accelerator& scene, const BenchMesh& view) : scene_(scene), view_(view) {}
+    RayMaker(const Accelerator& scene, const BenchMesh& view)
+        : scene_(scene), surfaces_(scene.instances()), view_(view) {}
 
     std::vector<Ray> primary(int side) {
         constexpr int kBlock = 16;
@@ -41,7 +42,7 @@ public:
         std::vector<SurfacePoint> points;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (!hits[i].valid()) continue;
-            SurfacePoint point = surface_point(scene_.instances(), rays[i], hits[i]);
+            SurfacePoint point = surfaces_.point(rays[i], hits[i]);
             if (glm::dot(point.ng, rays[i].direction) > 0) point.ng = -point.ng;
             points.push_back(point);
         }
@@ -82,6 +83,7 @@ private:
     }
 
     const Accelerator& scene_;
+    const Surfaces surfaces_;
     const BenchMesh& view_;
     std::mt19937 random_{1};
 };

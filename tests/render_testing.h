@@ -102,6 +102,29 @@ inline std::unique_ptr<Accumulation> render(const Scene& scene, int samples, con
     return film;
 }
 
+/// A film that grows on this thread, pass by pass.
+class Passes {
+public:
+    explicit Passes(const Scene& scene)
+        : scene_(make_render_scene(scene)),
+          tracer_(*scene_, scene.film.width, scene.film.height),
+          film_(scene.film.width, scene.film.height) {}
+
+    Accumulation& film() { return film_; }
+    /// Until every pixel has so many samples.
+    void render_to(int samples) {
+        PassControl control{.cancelled = cancelled_, .paths_done = done_};
+        film_.add_samples(tracer_, samples, control);
+    }
+
+private:
+    std::shared_ptr<const RenderScene> scene_;
+    PathTracer tracer_;
+    Accumulation film_;
+    const std::atomic<bool> cancelled_{false};
+    std::atomic<std::uint64_t> done_{0};
+};
+
 /// The means of all pixels, to be compared bit by bit.
 inline std::vector<Vec3d> means(const Film& film) {
     std::vector<Vec3d> result;

@@ -62,11 +62,16 @@ private:
     std::unique_ptr<const Way> way_;
 };
 
-struct SphereSurface {
+/// A shape ready to tell the surface where it was hit. Specialised for each alternative of TracedShape.
+template <typename Shape>
+struct SurfaceOf;
+
+template <>
+struct SurfaceOf<Sphere> {
     Placement placement;
     SphereD sphere;
 
-    SphereSurface(const Sphere& own, const Affine& to_world)
+    SurfaceOf(const Sphere& own, const Affine& to_world)
         : placement(to_world, world_sphere(own, to_world).has_value()),
           sphere(world_sphere(own, to_world).value_or(SphereD{Vec3d(own.center), own.radius})) {}
 
@@ -96,12 +101,13 @@ struct SphereSurface {
     }
 };
 
-struct PlaneSurface {
+template <>
+struct SurfaceOf<Plane> {
     Placement placement;
     PlaneD plane;  ///< Unit normal.
     Vec3d own_point, s, t;
 
-    PlaneSurface(const Plane& own, const Affine& to_world)
+    SurfaceOf(const Plane& own, const Affine& to_world)
         : placement(to_world, to_world.is_identity()), plane(world_plane(own, to_world)), own_point(own.point) {
         plane.normal = glm::normalize(plane.normal);
         const Vec3d normal = glm::normalize(Vec3d(own.normal));
@@ -122,12 +128,13 @@ struct PlaneSurface {
     }
 };
 
-struct BoxSurface {
+template <>
+struct SurfaceOf<Box> {
     Placement placement;
     Vec3d lo, hi;
     Vec3d scale{1};  ///< A step along an axis of the box is so long in the world.
 
-    BoxSurface(const Box& own, const Affine& to_world) : placement(to_world, world_box(own, to_world).has_value()) {
+    SurfaceOf(const Box& own, const Affine& to_world) : placement(to_world, world_box(own, to_world).has_value()) {
         const Box box = world_box(own, to_world).value_or(own);
         lo = Vec3d(box.min);
         hi = Vec3d(box.max);
@@ -185,14 +192,15 @@ double front_sign(const Affine& to_world) {
     return glm::determinant(glm::dmat3(to_world.linear)) < 0 ? -1 : 1;
 }
 
-struct TriangleSurface {
+template <>
+struct SurfaceOf<Triangle> {
     Flat flat;
     Vec3 ng;
 
-    TriangleSurface(const TriangleCorners& c, double sign)
+    SurfaceOf(const TriangleCorners& c, double sign)
         : flat(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2])), ng(unit(flat.normal(sign))) {}
-    TriangleSurface(const Triangle& own, const Affine& to_world)
-        : TriangleSurface(world_triangle(own, to_world), front_sign(to_world)) {}
+    SurfaceOf(const Triangle& own, const Affine& to_world)
+        : SurfaceOf(world_triangle(own, to_world), front_sign(to_world)) {}
 
     Surface at(const Ray&, const Hit& hit, bool) const {
         return {.p = flat.point(hit.u, hit.v), .size = flat.size, .ng = ng, .uv = Vec2(hit.u, hit.v)};
@@ -200,18 +208,17 @@ struct TriangleSurface {
 };
 
 /// The half that was hit decides the plane: rounded corners need not lie in one.
-struct QuadSurface {
-    TriangleSurface first, second;
+template <>
+struct SurfaceOf<Quad> {
+    SurfaceOf<Triangle> first, second;
 
-    QuadSurface(const QuadCorners& c, double sign)
-        : first({c[0], c[1], c[2]}, sign), second({c[0], c[2], c[3]}, sign) {}
-    QuadSurface(const Quad& own, const Affine& to_world)
-        : QuadSurface(world_quad(own, to_world), front_sign(to_world)) {}
+    SurfaceOf(const QuadCorners& c, double sign) : first({c[0], c[1], c[2]}, sign), second({c[0], c[2], c[3]}, sign) {}
+    SurfaceOf(const Quad& own, const Affine& to_world) : SurfaceOf(world_quad(own, to_world), front_sign(to_world)) {}
 
     Surface at(const Ray&, const Hit& hit, bool) const {
         const double u = hit.u, v = hit.v;
         const bool in_first = u >= v;
-        const TriangleSurface& half = in_first ? first : second;
+        const SurfaceOf<Triangle>& half = in_first ? first : second;
         return {.p = in_first ? half.flat.point(u - v, v) : half.flat.point(u, v - u),
                 .size = half.flat.size,
                 .ng = half.ng,
@@ -219,12 +226,13 @@ struct QuadSurface {
     }
 };
 
-struct MeshSurface {
+template <>
+struct SurfaceOf<std::shared_ptr<const TriangleMesh>> {
     Placement placement;
     std::shared_ptr<const TriangleMesh> mesh;
     double sign, offset;
 
-    MeshSurface(std::shared_ptr<const TriangleMesh> own, const Affine& to_world)
+    SurfaceOf(std::shared_ptr<const TriangleMesh> own, const Affine& to_world)
         : placement(to_world, to_world.is_identity()),
           mesh(std::move(own)),
           sign(front_sign(to_world)),
@@ -255,38 +263,11 @@ struct MeshSurface {
     }
 };
 
-template <typename Shape>
-struct SurfaceOf;
-template <>
-struct SurfaceOf<Sphere> {
-    using type = SphereSurface;
-};
-template <>
-struct SurfaceOf<Plane> {
-    using type = PlaneSurface;
-};
-template <>
-struct SurfaceOf<Box> {
-    using type = BoxSurface;
-};
-template <>
-struct SurfaceOf<Triangle> {
-    using type = TriangleSurface;
-};
-template <>
-struct SurfaceOf<Quad> {
-    using type = QuadSurface;
-};
-template <>
-struct SurfaceOf<std::shared_ptr<const TriangleMesh>> {
-    using type = MeshSurface;
-};
-
 template <typename List>
 struct SurfacesOf;
 template <typename... Shapes>
 struct SurfacesOf<std::variant<Shapes...>> {
-    using type = std::tuple<std::vector<typename SurfaceOf<Shapes>::type>...>;
+    using type = std::tuple<std::vector<SurfaceOf<Shapes>>...>;
 };
 
 SurfacePoint rounded(const Surface& surface) {
@@ -324,7 +305,7 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::m
     for (const GeometryInstance& instance : instances) {
         std::visit(
             [&]<typename Shape>(const Shape& shape) {
-                auto& table = std::get<std::vector<typename SurfaceOf<Shape>::type>>(tables_->kinds);
+                auto& table = std::get<std::vector<SurfaceOf<Shape>>>(tables_->kinds);
                 entries_.push_back(
                     {static_cast<std::uint32_t>(instance.shape.index()), static_cast<std::uint32_t>(table.size())});
                 table.emplace_back(shape, instance.to_world);

@@ -47,6 +47,20 @@ Accumulation::Accumulation(int width, int height)
     }
 }
 
+std::vector<RejectedPixel> Accumulation::rejected_pixels() const {
+    std::vector<RejectedPixel> found;
+    for (const Tile& tile : tiles_) {
+        if (tile.samples == 0) continue;
+        for_each_pixel(tile, [&](int x, int y) {
+            const auto pixel = static_cast<std::uint32_t>(y * film_.width() + x);
+            const std::uint64_t missing = static_cast<std::uint64_t>(tile.samples) - film_.count(pixel);
+            if (missing > 0) found.push_back({pixel, static_cast<std::uint32_t>(missing)});
+        });
+    }
+    std::ranges::sort(found, {}, &RejectedPixel::pixel);
+    return found;
+}
+
 int Accumulation::samples() const {
     return std::ranges::min_element(tiles_, {}, &Tile::samples)->samples;
 }

@@ -117,17 +117,12 @@ TEST_P(Caustics, ThreadsAndPassesDoNotChangeTheImage) {
     const Scene scene = scene_of(GetParam());
     const auto expected = means(render(scene, 3)->film());
     EXPECT_EQ(means(render(scene, 3, {}, 4)->film()), expected);
-    const auto render_scene = make_render_scene(scene);
-    const PathTracer tracer(*render_scene, scene.film.width, scene.film.height);
-    Accumulation film(scene.film.width, scene.film.height);
-    const std::atomic<bool> cancelled{false};
-    std::atomic<std::uint64_t> done{0};
-    PassControl control{.cancelled = cancelled, .paths_done = done};
-    for (const int samples : {1, 2, 3}) film.add_samples(tracer, samples, control);
-    EXPECT_EQ(means(film.film()), expected);
-    film.restart();
-    film.add_samples(tracer, 3, control);
-    EXPECT_EQ(means(film.film()), expected);
+    Passes passes(scene);
+    for (const int samples : {1, 2, 3}) passes.render_to(samples);
+    EXPECT_EQ(means(passes.film().film()), expected);
+    passes.film().restart();
+    passes.render_to(3);
+    EXPECT_EQ(means(passes.film().film()), expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Caustics, ::testing::ValuesIn(kCases), [](const auto& test) {

@@ -22,15 +22,10 @@ TEST(Determinism, ThreadsDoNotChangeTheImage) {
 
 TEST(Determinism, PassesDoNotChangeTheImage) {
     const Scene scene = mixed_scene(kWidth, kHeight);
-    const auto render_scene = make_render_scene(scene);
-    const PathTracer tracer(*render_scene, kWidth, kHeight);
-    const auto in_passes = [&](std::initializer_list<int> passes) {
-        Accumulation film(kWidth, kHeight);
-        const std::atomic<bool> cancelled{false};
-        std::atomic<std::uint64_t> done{0};
-        PassControl control{.cancelled = cancelled, .paths_done = done};
-        for (const int samples : passes) film.add_samples(tracer, samples, control);
-        return means(film.film());
+    const auto in_passes = [&](std::initializer_list<int> counts) {
+        Passes passes(scene);
+        for (const int samples : counts) passes.render_to(samples);
+        return means(passes.film().film());
     };
     EXPECT_EQ(in_passes({6}), in_passes({1, 2, 3, 4, 5, 6}));
     EXPECT_EQ(in_passes({6}), in_passes({4, 6}));

@@ -32,18 +32,13 @@ Outcome long_sums(double scale) {
 }
 
 std::vector<Vec3d> in_passes(const Scene& scene, int samples, int samples_a_pass) {
-    const auto render_scene = make_render_scene(scene);
-    const PathTracer tracer(*render_scene, scene.film.width, scene.film.height);
-    Accumulation film(scene.film.width, scene.film.height);
-    const std::atomic<bool> cancelled{false};
-    std::atomic<std::uint64_t> done{0};
-    PassControl control{.cancelled = cancelled, .paths_done = done};
+    Passes passes(scene);
     // What an edit throws away leaves no trace.
-    film.add_samples(tracer, 1, control);
-    film.restart();
-    for (int n = samples_a_pass; film.samples() < samples; n += samples_a_pass)
-        film.add_samples(tracer, std::min(n, samples), control);
-    return means(film.film());
+    passes.render_to(1);
+    passes.film().restart();
+    for (int n = samples_a_pass; passes.film().samples() < samples; n += samples_a_pass)
+        passes.render_to(std::min(n, samples));
+    return means(passes.film().film());
 }
 
 Outcome passes(double scale) {
