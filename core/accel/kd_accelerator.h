@@ -6,6 +6,10 @@
 
 namespace rayuela {
 
+/// Up to this many objects make one leaf, whatever the leaf size (the `median` split always splits). Measured: triangles and
+/// spheres in a room take as long either way where they are about 300, and 0.65 to 0.8 of the tree's time below 130.
+inline constexpr std::size_t kFewObjects = 160;
+
 /// Two levels of kd-trees: one over each distinct mesh in its own space, one over the objects. Planes are tested in turn.
 class KdAccelerator final : public Accelerator {
 public:
@@ -26,11 +30,14 @@ public:
     /// The tree of the mesh of an object; null for other shapes. For tests and statistics.
     const MeshTree* mesh_tree(std::uint32_t object) const { return mesh_of_object_[object]; }
 
+    /// False where all objects are tested in turn.
+    bool has_object_tree() const { return tree_.nodes.size() > 1; }
+
 private:
     KdAccelerator() = default;
     bool build_meshes(const KdAccelerator* previous, BuildControl& control);
     bool build_objects(BuildControl& control);
-    KdScene scene() const { return {objects_, mesh_of_object_, planes_, &tree_, &leaves_}; }
+    KdScene scene() const { return {objects_, mesh_of_object_, planes_, &tree_, &leaves_, bounds_}; }
 
     std::vector<GeometryInstance> instances_;
     AccelSettings settings_;
@@ -41,6 +48,7 @@ private:
     std::vector<const MeshTree*> mesh_of_object_;
     KdTree tree_;
     ObjectLeaves leaves_;
+    std::vector<Bounds3> bounds_;  ///< As KdScene::bounds.
     AccelStats stats_;
 };
 

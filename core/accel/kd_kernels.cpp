@@ -10,7 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/accel/object_lanes-inl.h"
+#include "core/accel/few_objects-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -18,7 +18,7 @@ namespace rayuela::HWY_NAMESPACE {
 /// What the trace of a batch needs room for. Kept from block to block.
 struct Workspace {
     RayBlock block;
-    std::uint32_t ids[kBlockRays];
+    std::uint32_t ids[kBlockRays + kLanes];
     std::vector<MeshCandidate> candidates;
     std::vector<std::uint32_t> first;  ///< One an object: where its candidates begin, sorted by object.
     std::vector<std::uint32_t> sorted;
@@ -76,6 +76,10 @@ void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit>
     const std::vector<std::uint32_t>& references = scene.tree->references;
     if (references.size() == 1 && scene.mesh_trees[references[0]]) {
         trace_mesh<kQuery>(scene, references[0], open, rays, hits, work.block);
+    } else if (!scene.bounds.empty()) {
+        work.candidates.clear();
+        FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open);
+        trace_candidates<kQuery>(scene, rays, hits, work);
     } else if (!references.empty()) {
         RayBlockWriter(rays, hits, nullptr, scene.tree->bounds).write(open, work.block);
         work.candidates.clear();

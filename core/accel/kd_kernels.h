@@ -15,6 +15,7 @@ struct KdScene {
     std::span<const std::uint32_t> planes;        ///< Objects that no tree can hold.
     const KdTree* tree = nullptr;                 ///< Over all other objects.
     const ObjectLeaves* leaves = nullptr;         ///< Of that tree.
+    std::span<const Bounds3> bounds;              ///< One an object, where the tree is one leaf that holds any.
 };
 
 /// Accelerator::intersect and Accelerator::occluded by the widest instructions of this machine.

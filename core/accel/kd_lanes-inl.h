@@ -200,6 +200,7 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
                 visits[count] = {static_cast<std::uint32_t>(g * kLanes + lane), &node};
                 at_leaf[g] |= LaneBits{node.is_leaf()} << lane;
                 count += node.is_leaf() && node.count() > 0 ? 1 : 0;
+                if (node.is_leaf() && node.count() > 0) client.prefetch(node);
             }
         }
         client.visit(std::span<const LeafVisit>(visits, count), groups);

@@ -8,6 +8,8 @@
 
 #include "core/accel/kd_kernels.h"
 
+#include <hwy/cache_control.h>
+
 #include "core/accel/kd_packets-inl.h"
 #include "core/accel/sphere_lanes-inl.h"
 #include "core/accel/triangle_lanes-inl.h"
@@ -50,6 +52,11 @@ public:
     HWY_INLINE void start(std::size_t slot, std::size_t i) {
         const std::uint32_t id = block_.id[i];
         triangles_.start(slot, i, t_end(rays_[id], hits_[id]));
+    }
+
+    HWY_INLINE void prefetch(const KdNode& leaf) const {
+        const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first();
+        for (std::size_t i = 0; i < kTriangleRuns * leaf.count(); i += 16) hwy::Prefetch(runs + i);
     }
 
     template <typename Slots>
@@ -105,6 +112,12 @@ private:
     std::size_t first_ = 0;  ///< Ray of the packet.
 };
 
+/// Makes the hit with a triangle of a leaf over objects the best one if it comes before it.
+HWY_INLINE void keep_triangle(const ObjectTriangle& triangle, ShapeHit hit, Hit& best) {
+    if (triangle.kind != ObjectTriangle::whole) set_quad_parameters(triangle.kind - ObjectTriangle::first_half, hit);
+    keep_closer(hit, triangle.object, 0, best);
+}
+
 /// A mesh on the way of a ray.
 struct MeshCandidate {
     std::uint32_t object, ray;
@@ -133,6 +146,8 @@ public:
         triangles_.start(slot, i, end);
         if (!leaves_.spheres.empty()) spheres_.start(slot, i, end);
     }
+
+    HWY_INLINE void prefetch(const KdNode&) const {}
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
@@ -167,8 +182,10 @@ public:
         const ObjectLeaf& leaf = leaves_.leaves[node.first()];
         const float* const runs = leaves_.triangle_runs.data() + kTriangleRuns * leaf.first_triangle;
         packet_.test(runs, leaf.triangles, mask_of(lanes),
-                     [&](std::size_t lane, std::size_t i, float t, float u, float v)
-                         HWY_ATTR { keep_triangle(first_ + lane, leaf.first_triangle + i, {.t = t, .u = u, .v = v}); });
+                     [&](std::size_t lane, std::size_t i, float t, float u, float v) HWY_ATTR {
+                         keep_triangle(leaves_.triangles[leaf.first_triangle + i], {.t = t, .u = u, .v = v},
+                                       hits_[block_.id[first_ + lane]]);
+                     });
         const float* const spheres = leaves_.sphere_runs.data() + 4 * leaf.first_sphere;
         for (std::size_t i = 0; i < leaf.spheres; ++i) {
             const std::uint32_t name = leaves_.spheres[leaf.first_sphere + i];
@@ -203,21 +220,14 @@ private:
     }
 
     HWY_INLINE void decide_triangles() {
-        triangles_.decide([&](std::uint32_t i, std::uint32_t name, float t, float u, float v)
-                              HWY_ATTR { keep_triangle(i, name, {.t = t, .u = u, .v = v}); });
-    }
-
-    /// Ray i of the block hits the triangle with this name.
-    HWY_INLINE void keep_triangle(std::size_t i, std::size_t name, ShapeHit hit) {
-        const ObjectTriangle& triangle = leaves_.triangles[name];
-        if (triangle.kind != ObjectTriangle::whole)
-            set_quad_parameters(triangle.kind - ObjectTriangle::first_half, hit);
-        keep_closer(hit, triangle.object, 0, hits_[block_.id[i]]);
+        triangles_.decide([&](std::uint32_t i, std::uint32_t name, float t, float u, float v) HWY_ATTR {
+            keep_triangle(leaves_.triangles[name], {.t = t, .u = u, .v = v}, hits_[block_.id[i]]);
+        });
     }
 
     HWY_INLINE void decide_spheres() {
-        spheres_.decide(hits_, [&](std::uint32_t i, std::uint32_t object, float t)
-                                   HWY_ATTR { keep_closer({.t = t}, object, 0, hits_[block_.id[i]]); });
+        spheres_.decide(hits_, [&](std::uint32_t ray, std::uint32_t object, float t)
+                                   HWY_ATTR { keep_closer({.t = t}, object, 0, hits_[ray]); });
     }
 
     HWY_INLINE void test_others(std::uint32_t id, const ObjectLeaf& leaf) {

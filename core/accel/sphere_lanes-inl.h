@@ -6,40 +6,10 @@
 #define RAYUELA_CORE_ACCEL_SPHERE_LANES_INL_H_
 #endif
 
-#include "core/shapes/intersect_sphere.h"
-
-#include "core/accel/kd_lanes-inl.h"
+#include "core/accel/sphere_tests-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
-
-/// Rays, or one ray in all lanes.
-struct SphereFilterRays {
-    Floats ox, oy, oz;  ///< Origin.
-    Floats nx, ny, nz;  ///< Unit direction.
-    Floats pad;         ///< RayBlock::pad.
-    Floats begin, end;  ///< Distances from the origin between which a hit counts.
-};
-
-/// Spheres, or one sphere in all lanes.
-struct FilterSpheres {
-    Floats x, y, z, radius;
-};
-
-/// False only for spheres that the exact test rejects. With R = |origin| + |bounds| the way from the ray's line to the centre
-/// is right within 40uR (rounding of ray and sphere to float, and 8 operations on numbers below 2R): less than 8 pad.
-HWY_INLINE FloatMask may_hit(const SphereFilterRays& ray, const FilterSpheres& sphere) {
-    const FloatTag d;
-    const Floats x = sphere.x - ray.ox, y = sphere.y - ray.oy, z = sphere.z - ray.oz;
-    const Floats reach = sphere.radius + hn::Set(d, 8) * ray.pad;
-    const Floats along = hn::MulAdd(z, ray.nz, hn::MulAdd(y, ray.ny, x * ray.nx));
-    const Floats px = hn::NegMulAdd(along, ray.nx, x), py = hn::NegMulAdd(along, ray.ny, y),
-                 pz = hn::NegMulAdd(along, ray.nz, z);
-    const Floats squared = hn::MulAdd(pz, pz, hn::MulAdd(py, py, px * px));
-    const auto near = hn::Le(squared, reach * reach * hn::Set(d, 1 + 16 * kUnitRoundoff));
-    const auto within = hn::And(hn::Ge(along + reach, ray.begin), hn::Le(along - reach, ray.end));
-    return hn::And(near, within);
-}
 
 /// Rays, one a slot, against the spheres of leaves: a filter in float for up to kLanes spheres at once, or of one sphere for
 /// all rays of a packet, then intersect_sphere, the same to the bit, for what is left of many rays at once. For the world: the
@@ -50,7 +20,7 @@ public:
         : block_(block), rays_(rays), spheres_(spheres) {}
 
     HWY_INLINE void start(std::size_t slot, std::size_t i, float t_max) {
-        ray_of_slot_[slot] = static_cast<std::uint32_t>(i);
+        ray_of_slot_[slot] = block_.id[i];
         const Ray& ray = rays_[block_.id[i]];
         const Vec3d d(ray.direction);
         const double length = glm::length(d);
@@ -75,11 +45,9 @@ public:
         const auto set = [&](const float* values) HWY_ATTR { return hn::Set(d, values[slot]); };
         const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n + i); };
         const FloatMask hit = may_hit(rays(set), FilterSpheres{load(0), load(1), load(2), load(3)});
-        for (LaneBits bits = bits_of(d, hn::And(hit, hn::FirstN(d, n - i))); bits != 0; bits &= bits - 1) {
-            ray_[size_] = ray_of_slot_[slot];
-            name_[size_++] = names[i + first_lane(bits)];
-        }
-        return size_ > kCapacity - kLanes;
+        for (LaneBits bits = bits_of(d, hn::And(hit, hn::FirstN(d, n - i))); bits != 0; bits &= bits - 1)
+            candidates_.add(ray_of_slot_[slot], names[i + first_lane(bits)]);
+        return candidates_.full();
     }
     /// Sphere i of the n of a leaf for the rays in slots 0 to kLanes that are in `here`. True as above.
     HWY_INLINE bool add_to_packet(FloatMask here, const float* runs, std::size_t n, std::size_t i, std::uint32_t name) {
@@ -87,34 +55,18 @@ public:
         const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
         const auto set = [&](std::size_t run) HWY_ATTR { return hn::Set(d, runs[run * n + i]); };
         const FloatMask hit = hn::And(here, may_hit(rays(load), FilterSpheres{set(0), set(1), set(2), set(3)}));
-        for (LaneBits bits = bits_of(d, hit); bits != 0; bits &= bits - 1) {
-            ray_[size_] = ray_of_slot_[first_lane(bits)];
-            name_[size_++] = name;
-        }
-        return size_ > kCapacity - kLanes;
+        for (LaneBits bits = bits_of(d, hit); bits != 0; bits &= bits - 1)
+            candidates_.add(ray_of_slot_[first_lane(bits)], name);
+        return candidates_.full();
     }
 
-    /// Calls accept(i, object, t) for each sphere added that ray i of the block hits at t before hits[i].t.
+    /// Calls accept(ray, object, t) for each sphere added that this ray of the batch hits at t before hits[ray].t.
     template <typename Accept>
-    HWY_INLINE void decide(std::span<const Hit> hits, const Accept& accept);
+    HWY_INLINE void decide(std::span<const Hit> hits, const Accept& accept) {
+        candidates_.decide(rays_, hits, spheres_, accept);
+    }
 
 private:
-    static constexpr std::size_t kCapacity = 256;
-
-    /// `excess` of spheres first to first + the lanes of a vector, worked out with care where it cancels.
-    HWY_INLINE Doubles careful(Doubles excess, hn::Mask<DoubleTag> cancels, std::size_t first) const {
-        const DoubleTag dd;
-        if (hn::AllFalse(dd, cancels)) return excess;
-        alignas(64) double values[hn::MaxLanes(DoubleTag())];
-        hn::Store(excess, dd, values);
-        for (LaneBits bits = bits_of(dd, cancels); bits != 0; bits &= bits - 1) {
-            const std::size_t k = first_lane(bits), at = std::min(first + k, size_ - 1);
-            const SphereD& sphere = spheres_[name_[at]];
-            values[k] = squared_distance_excess(Vec3d(rays_[block_.id[ray_[at]]].origin), sphere.center, sphere.radius);
-        }
-        return hn::Load(dd, values);
-    }
-
     template <typename Take>
     HWY_INLINE SphereFilterRays rays(const Take& take) const {
         return {take(origin_[0]),    take(origin_[1]), take(origin_[2]), take(direction_[0]), take(direction_[1]),
@@ -124,77 +76,12 @@ private:
     const RayBlock& block_;
     std::span<const Ray> rays_;
     const SphereD* spheres_;
-    std::uint32_t ray_of_slot_[kSlots];  ///< In the block.
+    std::uint32_t ray_of_slot_[kSlots];  ///< In the batch.
     alignas(64) float origin_[3][kSlots] = {}, direction_[3][kSlots] = {};
     alignas(64) float pad_[kSlots] = {}, begin_[kSlots] = {}, end_[kSlots] = {};
     float length_[kSlots] = {};
-    std::uint32_t ray_[kCapacity + 16] = {}, name_[kCapacity + 16] = {};
-    std::size_t size_ = 0;
+    SphereCandidates candidates_;
 };
-
-template <typename Accept>
-HWY_INLINE void SphereLanes::decide(std::span<const Hit> hits, const Accept& accept) {
-    const DoubleTag dd;
-    const hn::RebindToSigned<DoubleTag> di;
-    const hn::Rebind<float, DoubleTag> df;
-    constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
-    static_assert(sizeof(SphereD) == 4 * sizeof(double) && sizeof(Ray) == 8 * sizeof(float));
-    const auto dot = [](Doubles ax, Doubles ay, Doubles az, Doubles bx, Doubles by, Doubles bz)
-                         HWY_ATTR { return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz)); };
-    for (std::size_t i = 0; i < size_; i += kDoubles) {
-        alignas(64) std::int64_t sphere[kDoubles];
-        alignas(64) std::int32_t ray_field[kDoubles];
-        alignas(64) float t_min[kDoubles], t_max[kDoubles];
-        for (std::size_t k = 0; k < kDoubles; ++k) {
-            // Past the last stand earlier ones or zeros, whose results are dropped.
-            const std::size_t at = std::min(i + k, size_ - 1);
-            const std::uint32_t id = block_.id[ray_[at]];
-            sphere[k] = 4 * static_cast<std::int64_t>(name_[at]);
-            ray_field[k] = static_cast<std::int32_t>(8 * id);
-            t_min[k] = rays_[id].t_min;
-            t_max[k] = std::min(rays_[id].t_max, hits[id].t);
-        }
-        const auto ray = [&](std::size_t field) HWY_ATTR {
-            const auto index = hn::Load(hn::Rebind<std::int32_t, DoubleTag>(), ray_field);
-            return hn::PromoteTo(dd, hn::GatherIndex(df, &rays_.data()->origin.x + field, index));
-        };
-        const auto of_sphere = [&](std::size_t field) HWY_ATTR {
-            return hn::GatherIndex(dd, &spheres_->center.x + field, hn::Load(di, sphere));
-        };
-        const Doubles dx = ray(4), dy = ray(5), dz = ray(6), radius = of_sphere(3);
-        const Doubles fx = hn::Sub(ray(0), of_sphere(0)), fy = hn::Sub(ray(1), of_sphere(1)),
-                      fz = hn::Sub(ray(2), of_sphere(2));
-        const Doubles a = dot(dx, dy, dz, dx, dy, dz), b = hn::Neg(dot(fx, fy, fz, dx, dy, dz));
-        const Doubles s = hn::Div(b, a);
-        const Doubles px = hn::Add(fx, hn::Mul(s, dx)), py = hn::Add(fy, hn::Mul(s, dy)),
-                      pz = hn::Add(fz, hn::Mul(s, dz));
-        const Doubles closest = hn::Sqrt(dot(px, py, pz, px, py, pz));
-        const Doubles discriminant = hn::Mul(hn::Sub(radius, closest), hn::Add(radius, closest));
-        const auto met = hn::And(hn::Ge(discriminant, hn::Zero(dd)), hn::FirstN(dd, size_ - i));
-        const Doubles distance = hn::Sqrt(dot(fx, fy, fz, fx, fy, fz));
-        const Doubles from_surface = hn::Sub(distance, radius);
-        const Doubles c = careful(hn::Mul(from_surface, hn::Add(distance, radius)),
-                                  hn::Le(hn::Abs(from_surface), hn::Mul(hn::Set(dd, kSphereCancels), radius)), i);
-        const Doubles q = hn::Add(b, hn::CopySign(hn::Sqrt(hn::Mul(a, discriminant)), b));
-        const Doubles ta = hn::IfThenZeroElse(hn::Eq(q, hn::Zero(dd)), hn::Div(c, q)), tb = hn::Div(q, a);
-        const auto swapped = hn::Gt(ta, tb);
-        const auto first = hn::DemoteTo(df, hn::IfThenElse(swapped, tb, ta)),
-                   second = hn::DemoteTo(df, hn::IfThenElse(swapped, ta, tb));
-        const auto lowest = hn::Load(df, t_min), highest = hn::Load(df, t_max);
-        const auto contains = [&](hn::Vec<decltype(df)> t) HWY_ATTR {
-            return hn::And(hn::And(hn::Ge(t, lowest), hn::Le(t, highest)), hn::Lt(hn::Abs(t), hn::Set(df, kInfinity)));
-        };
-        const auto takes_first = contains(first);
-        const auto inside = hn::Or(takes_first, contains(second));
-        alignas(64) float t[kDoubles];
-        hn::Store(hn::IfThenElse(takes_first, first, second), df, t);
-        for (LaneBits bits = bits_of(dd, met) & bits_of(df, inside); bits != 0; bits &= bits - 1) {
-            const std::size_t k = first_lane(bits);
-            accept(ray_[i + k], name_[i + k], t[k]);
-        }
-    }
-    size_ = 0;
-}
 
 }  // namespace rayuela::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -60,12 +60,12 @@ TEST(KdVersusList, ManyScenes) {
     }
 }
 
-/// Everything on the lattice: rays run within faces, along edges and through vertices.
 TEST(KdVersusList, ACrowdOfObjects) {
     const auto instances = make_scene(7, 600, 30);
     expect_same_as_list(instances, make_rays(instances, 3000, 8), {1, 16, 64});
 }
 
+/// Everything on the lattice: rays run within faces, along edges and through vertices.
 TEST(KdVersusList, LatticeRaysThroughLatticeGeometry) {
     std::vector<GeometryInstance> instances{{make_grid(16, 0), {}}, {make_grid(8, 0), {Mat3(1), Vec3(0, 0.5f, 0)}}};
     for (int i = -2; i < 2; ++i) {

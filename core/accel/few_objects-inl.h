@@ -1,0 +1,301 @@
+// Compiled once for each set of instructions (Google Highway), hence no plain include guard.
+#if defined(RAYUELA_CORE_ACCEL_FEW_OBJECTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYUELA_CORE_ACCEL_FEW_OBJECTS_INL_H_
+#undef RAYUELA_CORE_ACCEL_FEW_OBJECTS_INL_H_
+#else
+#define RAYUELA_CORE_ACCEL_FEW_OBJECTS_INL_H_
+#endif
+
+#include "core/accel/object_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+/// As many rays of a batch as there are lanes.
+struct WorldRays {
+    Words id;
+    FloatMask usable;  ///< Exists and can hit something.
+    Floats origin[3], direction[3];
+    Floats t_min, t_end;
+    Floats pad;  ///< As RayBlock::pad.
+
+    /// The n (or kLanes, if that is less) rays from `ids` on. `reach` is the largest coordinate of the scene's bounds.
+    HWY_INLINE WorldRays(std::span<const Ray> rays, std::span<const Hit> hits, const std::uint32_t* ids, std::size_t n,
+                         float reach) {
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 5 * sizeof(float));
+        const FloatTag d;
+        const hn::RebindToSigned<FloatTag> di;
+        id = hn::LoadU(WordTag(), ids);
+        const auto index = hn::BitCast(di, id);
+        const auto field = [&](int offset) HWY_ATTR {
+            return hn::GatherIndex(d, &rays.data()->origin.x + offset, hn::ShiftLeft<3>(index));
+        };
+        for (int axis = 0; axis < 3; ++axis) {
+            origin[axis] = field(axis);
+            direction[axis] = field(4 + axis);
+        }
+        t_min = field(3);
+        const Floats t_max = field(7);
+        t_end = hn::Min(t_max, hn::GatherIndex(d, &hits.data()->t, hn::Add(hn::ShiftLeft<2>(index), index)));
+        const Floats zero = hn::Zero(d);
+        const auto sum_of_nothing = [&](const Floats(&v)[3])
+                                        HWY_ATTR { return v[0] * zero + v[1] * zero + v[2] * zero; };
+        const auto largest = [](const Floats(&v)[3])
+                                 HWY_ATTR { return hn::Max(hn::Abs(v[0]), hn::Max(hn::Abs(v[1]), hn::Abs(v[2]))); };
+        const auto finite = hn::Eq(sum_of_nothing(origin) + sum_of_nothing(direction), zero);
+        const auto in_range = hn::And(hn::Gt(largest(direction), zero), hn::Le(t_min, t_max));
+        usable = hn::And(hn::FirstN(d, n), hn::And(finite, in_range));
+        pad = hn::Set(d, 10 * kUnitRoundoff) * (largest(origin) + hn::Set(d, reach));
+    }
+};
+
+/// Rays of a batch against every object of a scene that has few: no tree, no order, all lanes full. Rays of one dominant axis
+/// go together, so that a triangle is turned once for 16 of them.
+template <Query kQuery>
+class FewObjects {
+public:
+    FewObjects(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits, std::vector<MeshCandidate>& meshes)
+        : scene_(scene), leaf_(scene.leaves->leaves[0]), rays_(rays), hits_(hits), meshes_(meshes) {
+        const Bounds3& bounds = scene.tree->bounds;
+        reach_ = max_component(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
+    }
+
+    /// `ids`: at most kBlockRays, kLanes more may be read. Meshes are noted down for later, all other shapes tested.
+    HWY_INLINE void trace(std::span<const std::uint32_t> ids) {
+        sort_by_axis(ids);
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            each_group(axis, [&](const WorldRays& rays) HWY_ATTR {
+                if (leaf_.triangles > 0) add_triangles(rays, axis);
+                if (leaf_.spheres > 0) add_spheres(rays);
+            });
+            decide_triangles(axis);
+            decide_spheres();
+            if (leaf_.others > 0) each_group(axis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });
+        }
+    }
+
+private:
+    static constexpr std::size_t kRoom = 1024;  ///< For candidates.
+
+    HWY_INLINE void sort_by_axis(std::span<const std::uint32_t> ids) {
+        const FloatTag d;
+        const WordTag dw;
+        const hn::RebindToSigned<FloatTag> di;
+        std::fill_n(size_, 3, 0);
+        for (std::size_t i = 0; i < ids.size(); i += kLanes) {
+            const FloatMask all = hn::FirstN(d, ids.size() - i);
+            const Words id = hn::IfThenElseZero(hn::RebindMask(dw, all), hn::LoadU(dw, ids.data() + i));
+            const auto index = hn::ShiftLeft<3>(hn::BitCast(di, id));
+            const auto size = [&](int axis) HWY_ATTR {
+                return hn::Abs(hn::GatherIndex(d, &rays_.data()->direction.x + axis, index));
+            };
+            const Floats x = size(0), y = size(1), z = size(2);
+            const FloatMask x_longest = hn::And(hn::Gt(x, y), hn::Gt(x, z));
+            const FloatMask y_longest = hn::AndNot(x_longest, hn::Gt(y, z));
+            const FloatMask of[3] = {x_longest, y_longest, hn::Not(hn::Or(x_longest, y_longest))};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const FloatMask mask = hn::And(of[axis], all);
+                hn::StoreU(hn::Compress(id, hn::RebindMask(dw, mask)), dw, ids_[axis] + size_[axis]);
+                size_[axis] += hn::CountTrue(d, mask);
+            }
+        }
+    }
+
+    template <typename Each>
+    HWY_INLINE void each_group(std::uint32_t axis, const Each& each) {
+        std::uint32_t* const ids = ids_[axis];
+        const std::size_t n = size_[axis];
+        if (n > 0) std::fill_n(ids + n, kLanes, ids[0]);
+        for (std::size_t i = 0; i < n; i += kLanes) each(WorldRays(rays_, hits_, ids + i, n - i, reach_));
+    }
+
+    const float* runs() const { return scene_.leaves->triangle_runs.data(); }
+
+    HWY_INLINE void add_triangles(const WorldRays& rays, std::uint32_t z) {
+        const FloatTag d;
+        const WordTag dw;
+        const std::uint32_t x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
+        const Floats depth = rays.direction[z];
+        const Floats from = depth * rays.t_min, to = depth * rays.t_end, rounding = hn::Set(d, 4 * kUnitRoundoff);
+        const Floats begin = hn::Min(from, to), end = hn::Max(from, to);
+        const FilterRays filter{rays.origin[x],
+                                rays.origin[y],
+                                rays.origin[z],
+                                rays.direction[x] / depth,
+                                rays.direction[y] / depth,
+                                rays.pad,
+                                begin - (rays.pad + rounding * hn::Abs(begin)),
+                                end + (rays.pad + rounding * hn::Abs(end))};
+        const std::size_t n = leaf_.triangles;
+        const float* run[kTriangleRuns];
+        const std::uint32_t turn[3] = {x, y, z};
+        for (std::size_t i = 0; i < 9; ++i) run[i] = runs() + (i / 3 * 3 + turn[i % 3]) * n;
+        run[9] = runs() + 9 * n;
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto set = [&](std::size_t k) HWY_ATTR { return hn::Set(d, run[k][i]); };
+            const FilterTriangles triangle{set(0), set(1), set(2), set(3), set(4),
+                                           set(5), set(6), set(7), set(8), set(9)};
+            const FloatMask hit = hn::And(may_hit(filter, triangle), rays.usable);
+            hn::StoreU(hn::Compress(rays.id, hn::RebindMask(dw, hit)), dw, ray_ + count_);
+            hn::StoreU(hn::Set(dw, static_cast<std::uint32_t>(i)), dw, triangle_ + count_);
+            count_ += hn::CountTrue(d, hit);
+            if (count_ > kRoom - kLanes) decide_triangles(z);
+        }
+    }
+
+    HWY_INLINE void decide_triangles(std::uint32_t z) {
+        const DoubleTag dd;
+        const hn::Rebind<float, DoubleTag> df;
+        const hn::Rebind<std::int32_t, DoubleTag> dw;
+        constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
+        const std::uint32_t x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
+        const std::size_t n = leaf_.triangles;
+        for (std::size_t i = 0; i < count_; i += kDoubles) {
+            // Past the last candidate lie earlier ones or zeros, whose results are dropped.
+            const auto id = hn::LoadU(dw, reinterpret_cast<const std::int32_t*>(ray_ + i));
+            const auto name = hn::LoadU(dw, reinterpret_cast<const std::int32_t*>(triangle_ + i));
+            const auto field = [&](std::uint32_t offset) HWY_ATTR {
+                return hn::GatherIndex(df, &rays_.data()->origin.x + offset, hn::ShiftLeft<3>(id));
+            };
+            const auto ray = [&](std::uint32_t offset) HWY_ATTR { return hn::PromoteTo(dd, field(offset)); };
+            const auto vertex = [&](std::uint32_t corner, std::uint32_t axis) HWY_ATTR {
+                return hn::PromoteTo(dd, hn::GatherIndex(df, runs() + (3 * corner + axis) * n, name));
+            };
+            const Doubles inverse_z = hn::Div(hn::Set(dd, 1), ray(4 + z));
+            const ExactHits hits =
+                intersect(ExactRays{ray(x), ray(y), ray(z), hn::Mul(ray(4 + x), inverse_z),
+                                    hn::Mul(ray(4 + y), inverse_z), inverse_z},
+                          ExactTriangles{vertex(0, x), vertex(0, y), vertex(0, z), vertex(1, x), vertex(1, y),
+                                         vertex(1, z), vertex(2, x), vertex(2, y), vertex(2, z)});
+            const auto t = hn::DemoteTo(df, hits.t);
+            const auto in_range =
+                hn::And(hn::And(hn::Ge(t, field(3)), hn::Le(t, field(7))), hn::Lt(hn::Abs(t), hn::Set(df, kInfinity)));
+            alignas(64) float ts[kDoubles], us[kDoubles], vs[kDoubles];
+            hn::Store(t, df, ts);
+            hn::Store(hn::DemoteTo(df, hits.u), df, us);
+            hn::Store(hn::DemoteTo(df, hits.v), df, vs);
+            const auto hit = hn::And(hits.hit, hn::FirstN(dd, count_ - i));
+            for (LaneBits bits = bits_of(dd, hit) & bits_of(df, in_range); bits != 0; bits &= bits - 1) {
+                const std::size_t k = first_lane(bits);
+                keep_triangle(scene_.leaves->triangles[triangle_[i + k]], {.t = ts[k], .u = us[k], .v = vs[k]},
+                              hits_[ray_[i + k]]);
+            }
+        }
+        count_ = 0;
+    }
+
+    HWY_INLINE void add_spheres(const WorldRays& rays) {
+        const FloatTag d;
+        const SphereFilterRays filter = sphere_filter(rays);
+        const float* const runs = scene_.leaves->sphere_runs.data();
+        for (std::size_t i = 0, n = leaf_.spheres; i < n; ++i) {
+            const auto set = [&](std::size_t run) HWY_ATTR { return hn::Set(d, runs[run * n + i]); };
+            const FloatMask hit = may_hit(filter, FilterSpheres{set(0), set(1), set(2), set(3)});
+            spheres_.add(rays.id, hn::And(hit, rays.usable), scene_.leaves->spheres[i]);
+            if (spheres_.full()) decide_spheres();
+        }
+    }
+
+    HWY_INLINE void decide_spheres() {
+        spheres_.decide(rays_, hits_, scene_.leaves->exact_spheres.data(),
+                        [&](std::uint32_t ray, std::uint32_t object, float t)
+                            HWY_ATTR { keep_closer({.t = t}, object, 0, hits_[ray]); });
+    }
+
+    static HWY_INLINE SphereFilterRays sphere_filter(const WorldRays& rays) {
+        const FloatTag d;
+        const DoubleTag dd;
+        const hn::Rebind<float, DoubleTag> df;
+        alignas(64) float direction[3][kLanes], length[kLanes];
+        for (std::size_t axis = 0; axis < 3; ++axis) hn::Store(rays.direction[axis], d, direction[axis]);
+        for (std::size_t i = 0; i < kLanes; i += hn::MaxLanes(dd)) {
+            const auto load = [&](std::size_t axis)
+                                  HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, direction[axis] + i)); };
+            const Doubles x = load(0), y = load(1), z = load(2);
+            const Doubles size = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+            const Doubles inverse = hn::Div(hn::Set(dd, 1), size);
+            hn::Store(hn::DemoteTo(df, size), df, length + i);
+            hn::Store(hn::DemoteTo(df, hn::Mul(x, inverse)), df, direction[0] + i);
+            hn::Store(hn::DemoteTo(df, hn::Mul(y, inverse)), df, direction[1] + i);
+            hn::Store(hn::DemoteTo(df, hn::Mul(z, inverse)), df, direction[2] + i);
+        }
+        const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
+        const Floats begin = load(length) * rays.t_min * hn::Set(d, 1 - 4 * kUnitRoundoff),
+                     end = load(length) * rays.t_end * hn::Set(d, 1 + 4 * kUnitRoundoff);
+        return {rays.origin[0],
+                rays.origin[1],
+                rays.origin[2],
+                load(direction[0]),
+                load(direction[1]),
+                load(direction[2]),
+                rays.pad,
+                begin,
+                end};
+    }
+
+    HWY_INLINE void test_others(const WorldRays& rays) {
+        const FloatTag d;
+        const Slabs slabs(rays);
+        alignas(64) std::uint32_t ids[kLanes];
+        hn::Store(rays.id, WordTag(), ids);
+        for (std::uint32_t k = 0; k < leaf_.others; ++k) {
+            const std::uint32_t object = scene_.leaves->others[k];
+            const FloatMask hit = hn::And(slabs.may_meet(scene_.bounds[object]), rays.usable);
+            for (LaneBits bits = bits_of(d, hit); bits != 0; bits &= bits - 1) {
+                const std::uint32_t id = ids[first_lane(bits)];
+                if (scene_.mesh_trees[object]) {
+                    meshes_.push_back({object, id});
+                } else {
+                    intersect_object(scene_.objects, object, rays_[id], hits_[id]);
+                }
+            }
+        }
+    }
+
+    /// Rays against boxes that bound objects: as RayBlock's against the planes of a tree.
+    struct Slabs {
+        const WorldRays& rays;
+        Floats inverse[3], overlap[3];
+        FloatMask extreme;  ///< Too long or too short a direction for floats: meets all.
+
+        HWY_INLINE explicit Slabs(const WorldRays& r) : rays(r) {
+            const FloatTag d;
+            Floats longest = hn::Zero(d);
+            for (int axis = 0; axis < 3; ++axis) {
+                const Floats size = hn::Max(hn::Abs(r.direction[axis]), hn::Set(d, 0x1p-100f));
+                inverse[axis] = hn::Set(d, 1) / hn::CopySignToAbs(size, r.direction[axis]);
+                overlap[axis] = r.pad * hn::Abs(inverse[axis]);
+                longest = hn::Max(longest, size);
+            }
+            extreme = hn::Or(hn::Lt(longest, hn::Set(d, 0x1p-60f)), hn::Gt(longest, hn::Set(d, 0x1p60f)));
+        }
+        HWY_INLINE FloatMask may_meet(const Bounds3& bounds) const {
+            const FloatTag d;
+            Floats begin = rays.t_min, end = rays.t_end;
+            for (int axis = 0; axis < 3; ++axis) {
+                const Floats lo = (hn::Set(d, bounds.lo[axis]) - rays.origin[axis]) * inverse[axis];
+                const Floats hi = (hn::Set(d, bounds.hi[axis]) - rays.origin[axis]) * inverse[axis];
+                begin = hn::Max(begin, hn::Min(lo, hi) - overlap[axis]);
+                end = hn::Min(end, hn::Max(lo, hi) + overlap[axis]);
+            }
+            return hn::Or(extreme, hn::Not(hn::Gt(begin, end)));
+        }
+    };
+
+    const KdScene& scene_;
+    const ObjectLeaf& leaf_;
+    std::span<const Ray> rays_;
+    std::span<Hit> hits_;
+    std::vector<MeshCandidate>& meshes_;
+    float reach_;
+    std::uint32_t ids_[3][kBlockRays + kLanes];  ///< Rays by dominant axis.
+    std::size_t size_[3] = {};
+    std::uint32_t ray_[kRoom + kLanes] = {}, triangle_[kRoom + kLanes] = {};  ///< Candidates.
+    std::size_t count_ = 0;
+    SphereCandidates spheres_;
+};
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
