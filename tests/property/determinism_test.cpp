@@ -1,4 +1,5 @@
 #include "tests/render_testing.h"
+#include "tests/support/scaled_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -114,15 +115,7 @@ TEST(Determinism, ScaleDoesNotChangeTheImage) {
     const Scene scene = mixed_scene(kWidth, kHeight);
     const auto expected = means(render(scene, kSamples)->film());
     for (const float scale : {0x1p-20f, 0x1p-3f, 0x1p20f}) {
-        Scene scaled = scene;
-        scaled.camera.position *= scale;
-        scaled.camera.target *= scale;
-        scaled.camera.focus_distance *= scale;
-        for (Object& object : scaled.objects) {
-            object.transform.translate *= scale;
-            object.transform.scale *= scale;
-        }
-        EXPECT_EQ(means(render(scaled, kSamples)->film()), expected) << "scale " << scale;
+        EXPECT_EQ(means(render(scaled_by(scene, scale), kSamples)->film()), expected) << "scale " << scale;
     }
 }
 

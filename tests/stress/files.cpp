@@ -1,11 +1,8 @@
-#include "core/io/gltf_reader.h"
 #include "core/io/image_io.h"
 #include "core/io/obj_reader.h"
 #include "core/io/ply_reader.h"
-#include "core/io/scene_reader.h"
-#include "core/render/render_scene.h"
-#include "core/scene/scene_edit.h"
 #include "tests/stress/stress.h"
+#include "tests/support/show_scene.h"
 
 #include <fmt/format.h>
 
@@ -18,25 +15,7 @@ namespace rayuela::stress {
 namespace {
 
 using test::Random;
-
-/// An accepted scene keeps the invariants, can be built and be looked at.
-bool can_be_shown(const Scene& scene) {
-    if (!validate(scene).empty()) return false;
-    BuildControl control;
-    const auto built = RenderScene::update(nullptr, std::make_shared<const Scene>(scene), all_changes(), control);
-    if (built) (void)pick(*built, Vec2(0.5f));
-    return true;
-}
-
-bool can_be_shown(const std::shared_ptr<const TriangleMesh>& mesh) {
-    Scene scene;
-    Object object;
-    object.id = ObjectId{scene.next_id++};
-    object.name = "mesh";
-    object.shape = Mesh{"stress.obj", mesh};
-    scene.objects.push_back(object);
-    return can_be_shown(scene);
-}
+using testing::can_be_shown;
 
 bool has_causes(const Problems& problems) {
     return !problems.empty() && std::ranges::none_of(problems, [](const Problem& p) { return p.cause.empty(); });
@@ -55,12 +34,7 @@ bool read_as_ply(const std::string& bytes) {
 }
 bool read_as_gltf(const std::string& bytes) {
     const auto file = parse_gltf(std::as_bytes(std::span(bytes)), "/nowhere/stress.glb");
-    if (!file) return has_causes(file.error());
-    LoadedObject loaded;
-    loaded.object.shape = Gltf{"/nowhere/stress.glb", (*file)->geometry, {}};
-    loaded.materials = (*file)->materials;
-    const auto scene = add_to_scene(Scene{}, loaded);
-    return scene && can_be_shown(*scene);
+    return file ? can_be_shown(**file) : has_causes(file.error());
 }
 bool read_as_scene(const std::string& bytes) {
     const auto loaded = scene_from_json(bytes, "/nowhere", "stress.scene.json");

@@ -96,6 +96,8 @@ std::vector<StressTest> sphere_tests();
 std::vector<StressTest> flat_shape_tests();
 std::vector<StressTest> watertight_tests();
 std::vector<StressTest> kd_build_tests();
+std::vector<StressTest> kd_invariant_tests();
+std::vector<StressTest> padding_tests();
 std::vector<StressTest> traversal_tests();
 std::vector<StressTest> offset_tests();
 std::vector<StressTest> light_leak_tests();
