@@ -1,8 +1,8 @@
 #include "app/bench_ray_sets.h"
 
 #include "core/accel/surface_point.h"
+#include "core/math/basis.h"
 #include "core/math/float_error.h"
-#include "core/math/frame.h"
 #include "core/math/sampling.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ public:
     std::vector<Ray> bounce(std::span<const SurfacePoint> points) {
         std::vector<Ray> rays;
         for (const SurfacePoint& point : points) {
-            const Vec3 w = Frame(point.ng).to_world(sample_cosine_hemisphere(sample()));
+            const Vec3 w = Basis(point.ng).to_world(sample_cosine_hemisphere(sample()));
             rays.push_back({.origin = offset_ray_origin(point.p, point.p_error, point.ng, w), .direction = w});
         }
         return rays;

@@ -19,6 +19,7 @@ RELATIVE = {
     "core/shapes/intersect_sphere.h": ["kSphereCancels"],
     "core/accel/surface_point.cpp": ["kDoubleError", "kSmallest"],
     "core/accel/traced_object.cpp": ["kTolerance"],
+    "core/accel/few_objects-inl.h": ["longest", "direction[axis]"],
     "core/accel/ray_block-inl.h": ["longest", "length >", "direction[axis]", "kBoundsTolerance"],
     "core/accel/triangle_tests-inl.h": ["difference"],
     "core/materials/microfacet.h": ["kSmoothAlpha"],

@@ -1,8 +1,8 @@
 #include "core/lights/area_light.h"
 
 #include "core/materials/bsdf.h"
+#include "core/math/basis.h"
 #include "core/math/float_error.h"
-#include "core/math/frame.h"
 #include "core/math/sampling.h"
 
 #include <cmath>
@@ -79,7 +79,7 @@ std::optional<LightSample> AreaLight::sample_sphere(const Vec3& p, const Vec2& u
         const float sin_alpha = std::sqrt(std::max(0.0f, 1 - cos_alpha * cos_alpha));
         const float length = std::sqrt(sin2_theta);
         const Vec2 around = length > 0 ? Vec2(local) / length : Vec2(1, 0);
-        n = Frame(-cone->axis).to_world({sin_alpha * around.x, sin_alpha * around.y, cos_alpha});
+        n = Basis(-cone->axis).to_world({sin_alpha * around.x, sin_alpha * around.y, cos_alpha});
     } else {
         n = sample_uniform_sphere(u);
     }

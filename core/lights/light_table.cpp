@@ -24,7 +24,10 @@ LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<co
     lights_.shrink_to_fit();
 
     const EnvironmentLight light(environment);
-    if (!light.image()) return;
+    if (!light.image()) {
+        few_ = FewLamps::of(lights_, tree_);
+        return;
+    }
     auto distribution = std::make_shared<const EnvironmentDistribution>(light);
     if (distribution->empty()) return;
     environment_ = std::move(distribution);
@@ -45,6 +48,18 @@ std::optional<LightSample> LightTable::sample(const LightReceiver& receiver, con
     if (u.x < environment_probability_) return sample_environment({u.x / environment_probability_, u.y});
     const float rest = (u.x - environment_probability_) / (1 - environment_probability_);
     return sample_area_light(receiver, {std::min(rest, 1 - kUnitRoundoff), u.y});
+}
+
+void LightTable::sample(LightBlock& block) const {
+    if (few_) {
+        few_->sample(block);
+        return;
+    }
+    for (std::size_t i = 0; i < block.size; ++i) {
+        const auto light = sample(block.receiver(i), {block.u[i], block.v[i]});
+        block.pdf[i] = 0;
+        if (light) block.put(i, *light);
+    }
 }
 
 std::optional<LightSample> LightTable::sample_environment(const Vec2& u) const {

@@ -3,6 +3,8 @@
 #include "core/accel/accelerator.h"
 #include "core/lights/area_light.h"
 #include "core/lights/environment_distribution.h"
+#include "core/lights/few_lamps.h"
+#include "core/lights/light_block.h"
 #include "core/lights/light_sample.h"
 #include "core/lights/light_tree.h"
 #include "core/materials/material.h"
@@ -37,6 +39,9 @@ public:
     /// Where `u` is stratified, so are the points of each light. Nothing where the point does not shine towards it.
     std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
 
+    /// The same for many points, to the last bit.
+    void sample(LightBlock& block) const;
+
     /// Density per solid angle with which `sample` draws the unit direction `wi`, which hits the surface `hit` at
     /// `hit_point` (unit geometric normal `ng` of the front). 0 where it would not.
     float pdf(const LightReceiver& receiver, const Vec3& wi, const Hit& hit, const Vec3& hit_point,
@@ -46,10 +51,6 @@ public:
 
     /// The lights but for the environment.
     std::span<const AreaLight> lights() const { return lights_; }
-    /// The light that every sample is drawn from, where there is but one and it is no environment; else null.
-    const AreaLight* only_light() const {
-        return environment_ || !tree_.only_light() ? nullptr : &lights_[*tree_.only_light()];
-    }
     /// Which of `lights` the surface `hit` is, or kNone.
     std::uint32_t light_of(const Hit& hit) const {
         if (hit.object >= first_light_.size() || first_light_[hit.object] == kNone) return kNone;
@@ -67,6 +68,7 @@ private:
     std::vector<AreaLight> lights_;           ///< Those of an object lie together, in the order of its primitives.
     std::vector<std::uint32_t> first_light_;  ///< Of an object, or kNone.
     LightTree tree_;                          ///< Over lights_, without the environment.
+    std::optional<FewLamps> few_;             ///< Where these are all and nothing more.
     std::shared_ptr<const EnvironmentDistribution> environment_;
     float environment_probability_ = 0;
 };

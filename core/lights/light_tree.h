@@ -32,6 +32,11 @@ public:
     std::optional<std::uint32_t> only_light() const {
         return light_count_ == 1 ? std::optional(only_light_) : std::nullopt;
     }
+    std::size_t size() const { return light_count_; }
+    /// What is known of each light, and which lane is which light, where one node holds them all; else null.
+    const LightClusters* only_clusters() const { return nodes_.size() == 1 ? &nodes_[0].clusters : nullptr; }
+    std::uint32_t light_in_lane(std::size_t lane) const { return nodes_[0].child[lane] - kLeaf; }
+
     /// `u` in [0, 1). Nothing where no light can reach the receiver.
     std::optional<Draw> draw(const LightReceiver& receiver, float u) const;
     /// The probability with which `draw` draws the light.

@@ -1,7 +1,7 @@
 #include "core/lights/targets.h"
 
+#include "core/math/basis.h"
 #include "core/math/bounds.h"
-#include "core/math/frame.h"
 #include "core/math/sampling.h"
 
 #include <algorithm>
@@ -95,8 +95,8 @@ Vec3 TargetView::sample(float u_target, const Vec2& u) const {
         rest -= weights_[i];
     }
     const auto cap = cap_of(p_, center(target), clusters_.radius2[target]);
-    if (!cap) return Frame(normal_).to_world(sample_cosine_hemisphere(u));
-    return Frame(glm::normalize(center(target) - p_)).to_world(sample_uniform_cone(u, *cap));
+    if (!cap) return Basis(normal_).to_world(sample_cosine_hemisphere(u));
+    return Basis(glm::normalize(center(target) - p_)).to_world(sample_uniform_cone(u, *cap));
 }
 
 float TargetView::pdf(const Vec3& w) const {

@@ -14,10 +14,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
-HWY_ATTR void draw_pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
-    const FloatTag d;
+/// take(lanes, first, n) for n samplers at a time.
+template <typename Take>
+HWY_INLINE void each_group(std::span<const Sampler> samplers, const Take& take) {
     alignas(64) std::uint32_t key_0[kLanes] = {}, key_1[kLanes] = {}, reversed_index[kLanes] = {};
-    alignas(64) float x[kLanes], y[kLanes];
     for (std::size_t first = 0; first < samplers.size(); first += kLanes) {
         const std::size_t n = std::min(kLanes, samplers.size() - first);
         for (std::size_t i = 0; i < n; ++i) {
@@ -26,11 +26,26 @@ HWY_ATTR void draw_pairs(std::span<const Sampler> samplers, std::uint32_t dimens
             key_1[i] = sampler.key()[1];
             reversed_index[i] = sampler.reversed_index();
         }
-        const Vec2Lanes u = SamplerLanes(samplers[0].kind(), key_0, key_1, reversed_index).get_2d(dimension);
-        hn::Store(u.x, d, x);
-        hn::Store(u.y, d, y);
-        for (std::size_t i = 0; i < n; ++i) numbers[first + i] = {x[i], y[i]};
+        take(SamplerLanes(samplers[0].kind(), key_0, key_1, reversed_index), first, n);
     }
+}
+
+HWY_ATTR void draw_singles(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<float> numbers) {
+    alignas(64) float x[kLanes];
+    each_group(samplers, [&](const SamplerLanes& lanes, std::size_t first, std::size_t n) HWY_ATTR {
+        hn::Store(lanes.get_1d(dimension), FloatTag(), x);
+        std::copy_n(x, n, numbers.begin() + static_cast<std::ptrdiff_t>(first));
+    });
+}
+
+HWY_ATTR void draw_pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
+    alignas(64) float x[kLanes], y[kLanes];
+    each_group(samplers, [&](const SamplerLanes& lanes, std::size_t first, std::size_t n) HWY_ATTR {
+        const Vec2Lanes u = lanes.get_2d(dimension);
+        hn::Store(u.x, FloatTag(), x);
+        hn::Store(u.y, FloatTag(), y);
+        for (std::size_t i = 0; i < n; ++i) numbers[first + i] = {x[i], y[i]};
+    });
 }
 
 }  // namespace rayuela::HWY_NAMESPACE
@@ -39,7 +54,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace rayuela {
 
+HWY_EXPORT(draw_singles);
 HWY_EXPORT(draw_pairs);
+
+void draw_1d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<float> numbers) {
+    HWY_DYNAMIC_DISPATCH(draw_singles)(samplers, dimension, numbers);
+}
 
 void draw_2d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
     HWY_DYNAMIC_DISPATCH(draw_pairs)(samplers, dimension, numbers);

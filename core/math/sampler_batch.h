@@ -6,6 +6,9 @@
 
 namespace rayuela {
 
+/// numbers[i] becomes samplers[i].get_1d(dimension), many at once. All samplers are of one kind.
+void draw_1d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<float> numbers);
+
 /// numbers[i] becomes samplers[i].get_2d(dimension), many at once. All samplers are of one kind.
 void draw_2d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers);
 

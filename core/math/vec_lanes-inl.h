@@ -10,7 +10,7 @@
 #include "core/math/sampling.h"
 #include "core/math/vec.h"
 
-// What math/vec.h, frame.h, float_error.h and sampling.h do, one point, direction or frame a lane: the same operations in
+// What math/vec.h, basis.h, float_error.h and sampling.h do, one point, direction or basis a lane: the same operations in
 // the same order, and so the same bits on every set of instructions.
 
 HWY_BEFORE_NAMESPACE();
@@ -63,10 +63,10 @@ HWY_INLINE Floats max_component(const Vec3Lanes& v) {
     return hn::Max(v.x, hn::Max(v.y, v.z));
 }
 
-struct FrameLanes {
+struct BasisLanes {
     Vec3Lanes s, t, n;
 
-    explicit HWY_INLINE FrameLanes(const Vec3Lanes& normal) : n(normal) {
+    explicit HWY_INLINE BasisLanes(const Vec3Lanes& normal) : n(normal) {
         const Floats one = all_lanes(1.0f), sign = hn::CopySign(one, n.z);
         const Floats a = hn::Neg(one) / (sign + n.z);
         const Floats b = n.x * n.y * a;
@@ -125,6 +125,32 @@ HWY_INLINE Vec3Lanes sample_cosine_hemisphere(const Vec2Lanes& u) {
     const Vec2Lanes d = sample_concentric_disk(u);
     const Floats z2 = all_lanes(1.0f) - d.x * d.x - d.y * d.y;
     return {d.x, d.y, hn::Sqrt(hn::Max(hn::Zero(FloatTag()), z2))};
+}
+
+HWY_INLINE Vec2Lanes cos_sin_turns(Floats turns) {
+    const FloatTag d;
+    const hn::RebindToSigned<FloatTag> di;
+    const Floats quarter = hn::Floor(all_lanes(4.0f) * turns + all_lanes(0.5f));
+    const Vec2Lanes w = cos_sin_octant(all_lanes(2 * kPi) * (turns - all_lanes(0.25f) * quarter));
+    const auto quarters = hn::ConvertTo(di, quarter);
+    const auto bit = [&](int value) HWY_ATTR { return hn::RebindMask(d, hn::TestBit(quarters, hn::Set(di, value))); };
+    const FloatMask odd = bit(1), beyond_half = bit(2);
+    const Vec2Lanes across{hn::IfThenElse(odd, hn::Neg(w.y), w.x), hn::IfThenElse(odd, w.x, w.y)};
+    return {hn::IfThenElse(beyond_half, hn::Neg(across.x), across.x),
+            hn::IfThenElse(beyond_half, hn::Neg(across.y), across.y)};
+}
+
+HWY_INLINE Vec3Lanes sample_uniform_cone(const Vec2Lanes& u, Floats one_minus_cos) {
+    const Floats x = u.x * one_minus_cos;
+    const Floats sine = hn::Sqrt(hn::Max(hn::Zero(FloatTag()), x * (all_lanes(2.0f) - x)));
+    const Vec2Lanes around = cos_sin_turns(u.y);
+    return {sine * around.x, sine * around.y, all_lanes(1.0f) - x};
+}
+
+HWY_INLINE Vec2Lanes sample_uniform_triangle(const Vec2Lanes& u) {
+    const FloatMask below = hn::Lt(u.x, u.y);
+    const Floats x = u.x * all_lanes(0.5f), y = u.y * all_lanes(0.5f);
+    return {hn::IfThenElse(below, x, u.x - y), hn::IfThenElse(below, u.y - x, y)};
 }
 
 HWY_INLINE Floats power_heuristic(Floats a, Floats b) {

@@ -1,6 +1,6 @@
 #include "core/render/camera_rays.h"
 
-#include "core/math/frame.h"
+#include "core/math/basis.h"
 #include "core/math/sampling.h"
 
 #include <cmath>
@@ -24,7 +24,7 @@ Axes view_axes(const Camera& camera) {
     // The cosine below which `up` still says which way is up: its sine is lost in the rounding of the two vectors.
     constexpr double kParallel = 1 - 1e-12;
     Vec3d up = unit_or(Vec3d(camera.up), Vec3d(0, 1, 0));
-    if (std::abs(glm::dot(up, forward)) > kParallel) up = Vec3d(Frame(Vec3(forward)).s);
+    if (std::abs(glm::dot(up, forward)) > kParallel) up = Vec3d(Basis(Vec3(forward)).s);
     const Vec3d right = glm::normalize(glm::cross(forward, up));
     return {forward, right, glm::cross(right, forward)};
 }

@@ -2,8 +2,8 @@
 
 #include "core/accel/surface_point.h"
 #include "core/lights/light_importance.h"
+#include "core/math/basis.h"
 #include "core/math/float_error.h"
-#include "core/math/frame.h"
 #include "core/render/render_scene.h"
 
 #include <optional>
@@ -25,7 +25,7 @@ public:
     const SurfacePoint& point;
     const PackedMaterial& material;
     Vec3 wo;
-    Frame frame;  ///< Around the shading normal.
+    Basis frame;  ///< Around the shading normal.
     Vec3 wo_local;
 
     const Bsdf& bsdf() const { return varying_ ? *varying_ : material.bsdf; }

@@ -42,11 +42,11 @@ HWY_INLINE SamplerLanes samplers(const MatteTask& task, const MatteBlock& block,
 /// As Interaction has it.
 struct InteractionLanes {
     Vec3Lanes p, p_error, ng;
-    FrameLanes frame;
+    BasisLanes frame;
     Vec3Lanes wo_local;
 
     HWY_INLINE InteractionLanes(const MatteBlock& block, std::size_t i)
-        : p(load(block.p, i)),
+        : p(load(block.light.p, i)),
           p_error(load(block.p_error, i)),
           ng(load(block.ng, i)),
           frame(shading_normal(load(block.wo, i), ng, load(block.ns, i))),
@@ -62,64 +62,33 @@ struct InteractionLanes {
 };
 
 HWY_ATTR void prepare_lights(const MatteTask& task, MatteBlock& block) {
+    block.light.size = block.size;
     for (std::size_t i = 0; i < block.size; i += kLanes) {
         const Vec2Lanes u = samplers(task, block, i).get_2d(task.light_dimension);
-        store(u.x, block.light_u, i);
-        store(u.y, block.light_v, i);
+        store(u.x, block.light.u, i);
+        store(u.y, block.light.v, i);
         const InteractionLanes at(block, i);
         const FloatMask behind = hn::Lt(at.wo_local.z, hn::Zero(FloatTag()));
-        store(select(behind, -at.frame.n, at.frame.n), block.receiver_n, i);
-    }
-}
-
-/// As AreaLight::sample has it.
-HWY_ATTR void flat_lamp(const AreaLight& lamp, const Vec3& point_error, MatteBlock& block) {
-    const Floats zero = hn::Zero(FloatTag()), half = all_lanes(0.5f);
-    const Vec3Lanes normal = all_lanes(lamp.normal), gamma_6 = all_lanes(Vec3(gamma(6)));
-    for (std::size_t i = 0; i < block.size; i += kLanes) {
-        // As LightTable::sample passes it on.
-        Floats u = hn::Min(load(block.light_u, i), all_lanes(1 - kUnitRoundoff)), v = load(block.light_v, i);
-        if (lamp.kind == AreaLight::Kind::triangle) {
-            const FloatMask below = hn::Lt(u, v);
-            const Floats u_half = u * half, v_half = v * half;
-            const Floats b1 = hn::IfThenElse(below, u_half, u - v_half);
-            v = hn::IfThenElse(below, v - u_half, v_half);
-            u = b1;
-        }
-        const Vec3Lanes p = load(block.p, i);
-        const Vec3Lanes point = all_lanes(lamp.origin) + all_lanes(lamp.edge_u) * u + all_lanes(lamp.edge_v) * v;
-        const Vec3Lanes d = point - p;
-        const Floats distance2 = dot(d, d), distance = hn::Sqrt(distance2);
-        const Vec3Lanes wi = d / distance;
-        const Floats cosine = hn::Neg(dot(normal, wi));
-        const FloatMask shines = hn::And(positive(distance), lamp.two_sided ? hn::Ne(cosine, zero) : positive(cosine));
-        const Floats pdf = distance2 / (all_lanes(lamp.area()) * hn::Abs(dot(normal, wi)));
-        const FloatMask found = hn::And(shines, finite_positive(pdf));
-        store(hn::IfThenElseZero(found, pdf), block.light_pdf, i);
-        store(wi, block.light_wi, i);
-        store(all_lanes(lamp.radiance), block.light_radiance, i);
-        const Vec3Lanes error = gamma_6 * abs(p) + all_lanes(point_error);
-        store(offset_ray_origin(point, error, normal, -wi), block.light_target, i);
-        store(zero, block.light_far, i);
+        store(select(behind, -at.frame.n, at.frame.n), block.light.n, i);
     }
 }
 
 /// As PathTracer::sample_light has it.
 HWY_INLINE FloatMask light_paths(const MatteTask& task, const InteractionLanes& at, std::size_t i, MatteBlock& block) {
     const FloatTag d;
-    const Floats pdf = load(block.light_pdf, i), zero = hn::Zero(d);
+    const Floats pdf = load(block.light.pdf, i);
     FloatMask lit = positive(pdf);
     if (hn::AllFalse(d, lit)) return lit;
-    const Vec3Lanes wi = load(block.light_wi, i), wi_local = at.frame.to_local(wi);
+    const Vec3Lanes wi = load(block.light.wi, i), wi_local = at.frame.to_local(wi);
     lit = hn::And(lit, hn::And(at.consistent(wi, wi_local), positive(at.wo_local.z * wi_local.z)));
     const Floats bsdf_pdf = all_lanes(kInvPi) * hn::Abs(wi_local.z);
     const Floats weight = task.mis ? power_heuristic(pdf, bsdf_pdf) : all_lanes(1.0f);
     const Vec3Lanes value = load(block.albedo, i) * bsdf_pdf;
-    const Vec3Lanes arriving = load(block.throughput, i) * value * load(block.light_radiance, i) * (weight / pdf);
+    const Vec3Lanes arriving = load(block.throughput, i) * value * load(block.light.radiance, i) * (weight / pdf);
     lit = hn::And(lit, hn::Not(is_black(arriving)));
     const Vec3Lanes origin = at.ray_origin(wi);
     store(origin, block.shadow_origin, i);
-    store(select(hn::Ne(load(block.light_far, i), zero), wi, load(block.light_target, i) - origin),
+    store(select(hn::Eq(load(block.light.distance, i), all_lanes(kInfinity)), wi, load(block.light.target, i) - origin),
           block.shadow_direction, i);
     store(arriving, block.shadow_light, i);
     return lit;
@@ -176,15 +145,10 @@ HWY_AFTER_NAMESPACE();
 namespace rayuela {
 
 HWY_EXPORT(prepare_lights);
-HWY_EXPORT(flat_lamp);
 HWY_EXPORT(scatter);
 
 void prepare_light_samples(const MatteTask& task, MatteBlock& block) {
     HWY_DYNAMIC_DISPATCH(prepare_lights)(task, block);
-}
-
-void sample_flat_lamp(const AreaLight& lamp, MatteBlock& block) {
-    HWY_DYNAMIC_DISPATCH(flat_lamp)(lamp, lamp.point_error(), block);
 }
 
 void scatter_matte(const MatteTask& task, MatteBlock& block) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/lights/light_table.h"
+#include "core/lights/light_block.h"
 #include "core/math/sampler.h"
 
 #include <cstddef>
@@ -11,25 +11,19 @@ namespace rayuela {
 /// Paths at untextured diffuse surfaces, as a structure of arrays: what most paths of most scenes meet, so these are
 /// shaded many at once. Every path comes out as the stages for one path would have it, to the last bit.
 struct MatteBlock {
-    static constexpr std::size_t kSize = 64;
-    using Row = float[kSize];
-    using Rows = float[3][kSize];
+    static constexpr std::size_t kSize = LightBlock::kSize;
+    using Row = LightBlock::Row;
+    using Rows = LightBlock::Rows;
     using WordRow = std::uint32_t[kSize];
 
     std::size_t size = 0;
+    LightBlock light;  ///< Holds the points p; the rest is filled between the steps.
 
     // Given.
     alignas(64) Rows wo;
-    Rows p, p_error, ng, ns;
+    Rows p_error, ng, ns;
     Rows throughput, albedo;
     WordRow key_0, key_1, reversed_index;  ///< Of the samplers.
-
-    // Between the steps.
-    Row light_u, light_v;
-    Rows receiver_n;  ///< See LightReceiver.
-    Rows light_wi, light_target, light_radiance;
-    Row light_pdf;  ///< 0: no sample.
-    Row light_far;  ///< Not 0: light_target says nothing, the light is infinitely far.
 
     // Found.
     Rows shadow_origin, shadow_direction, shadow_light;
@@ -47,11 +41,9 @@ struct MatteTask {
     float roulette_throughput;  ///< Below it paths may be cut; 0 where not yet.
 };
 
-/// Fills light_u, light_v and receiver_n.
+/// Fills what LightTable::sample wants to know.
 void prepare_light_samples(const MatteTask& task, MatteBlock& block);
-/// Fills the light samples from a lamp that is flat and without texture.
-void sample_flat_lamp(const AreaLight& lamp, MatteBlock& block);
-/// Fills what is found, from all the rest.
+/// Fills what is found, from all the rest and the light samples.
 void scatter_matte(const MatteTask& task, MatteBlock& block);
 
 }  // namespace rayuela

@@ -3,6 +3,7 @@
 #include "core/accel/surface_point.h"
 #include "core/lights/light_importance.h"
 #include "core/math/sampler.h"
+#include "core/render/interaction.h"
 #include "core/render/matte.h"
 
 #include <cstdint>
@@ -43,6 +44,18 @@ struct RayCounts {
     }
 };
 
+/// Paths at all other surfaces: shaded one by one, but their random numbers and light samples are drawn together.
+struct SurfaceBlock {
+    static constexpr std::size_t kSize = LightBlock::kSize;
+
+    std::vector<Interaction> at;
+    std::vector<std::uint32_t> states;  ///< Which of PathBatch::states.
+    std::vector<Sampler> samplers;
+    float lobe_numbers[kSize];
+    Vec2 direction_numbers[kSize], light_numbers[kSize];
+    LightBlock light{};
+};
+
 /// Many paths on their way, as a structure of arrays, and the scratch memory of the stages that drive them. Kept by a
 /// worker from batch to batch: after the first nothing is allocated.
 struct PathBatch {
@@ -69,6 +82,8 @@ struct PathBatch {
     // Paths at surfaces that many are shaded at once, and which of `states` they are.
     MatteBlock matte{};
     std::uint32_t matte_states[MatteBlock::kSize];
+
+    SurfaceBlock surfaces;
 
     RayCounts counts;  ///< Of all batches since the worker set them to 0.
 };

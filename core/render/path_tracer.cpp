@@ -143,27 +143,67 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
-        // Where a lamp's path cannot be the same as this one, all caustics are left to it.
-        const bool aims = light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;
-        if (options_.matte_blocks && material.matte && !aims) {
+        if (options_.matte_blocks && material.matte && !aims(state, bounce)) {
             if (!last) add_matte(batch, i, *material.matte, bounce);
             continue;
         }
-        const Interaction at(batch.points[i], material, -ray.direction);
         batch.counts.textured_hits += material.textured;
-        if (material.emissive) batch.radiance[state.path] += emitted_light(state, ray, hit, at);
-        if (last) continue;
-        const AimedBsdf bsdf(at, aims ? &scene_.emission()->targets() : nullptr);
-        if (light_sampling_ && material.smooth) sample_light(batch, state, at, bsdf, bounce);
-        if (bsdf.aims() && state.bsdf_pdf == 0 && state.sampler == state.path) {
-            split(batch, state, ray, at, bsdf, bounce);
-        } else {
-            scatter(batch, state, ray, at, bsdf, bounce);
-        }
+        batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction);
+        batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
+        if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
+    shade_surfaces(batch, bounce, last);
     shade_matte(batch, bounce);
     batch.states.swap(batch.next_states);
     batch.rays.swap(batch.next_rays);
+}
+
+/// Shades what has gathered, and empties the block.
+void PathTracer::shade_surfaces(PathBatch& batch, int bounce, bool last) const {
+    SurfaceBlock& block = batch.surfaces;
+    if (!last) draw_numbers(batch, bounce);
+    for (std::size_t k = 0; k < block.at.size(); ++k) {
+        const Interaction& at = block.at[k];
+        const std::size_t i = block.states[k];
+        const PathState& state = batch.states[i];
+        const Ray& ray = batch.rays[i];
+        if (at.material.emissive) batch.radiance[state.path] += emitted_light(state, ray, batch.hits[i], at);
+        if (last) continue;
+        const AimedBsdf bsdf(at, aims(state, bounce) ? &scene_.emission()->targets() : nullptr);
+        if (light_sampling_ && at.material.smooth && block.light.pdf[k] > 0)
+            add_light(batch, state, at, bsdf, block.light.sample(k));
+        if (bsdf.aims() && state.bsdf_pdf == 0 && state.sampler == state.path) {
+            split(batch, state, ray, at, bsdf, bounce);
+        } else {
+            scatter(batch, state, ray, at, bsdf, {block.lobe_numbers[k], block.direction_numbers[k]}, bounce);
+        }
+    }
+    block.at.clear();
+    block.states.clear();
+}
+
+/// Draws what the surfaces of the block need: light samples, and the numbers to scatter with.
+void PathTracer::draw_numbers(PathBatch& batch, int bounce) const {
+    SurfaceBlock& block = batch.surfaces;
+    const std::size_t n = block.at.size();
+    block.samplers.clear();
+    for (const std::uint32_t i : block.states) block.samplers.push_back(batch.samplers[batch.states[i].sampler]);
+    draw_1d(block.samplers, dimension(bounce, kLobe), block.lobe_numbers);
+    draw_2d(block.samplers, direction_dimension(bounce, light_sampling_), block.direction_numbers);
+    if (!light_sampling_) return;
+    draw_2d(block.samplers, light_dimension(bounce), block.light_numbers);
+    block.light.size = n;
+    for (std::size_t k = 0; k < n; ++k) {
+        block.light.put_receiver(k, block.at[k].receiver());
+        block.light.u[k] = block.light_numbers[k].x;
+        block.light.v[k] = block.light_numbers[k].y;
+    }
+    scene_.lights().sample(block.light);
+}
+
+/// Whether all caustics are left to this path: no lamp's path can be the same.
+bool PathTracer::aims(const PathState& state, int bounce) const {
+    return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;
 }
 
 /// Goes on as several paths of equal weight.
@@ -175,8 +215,10 @@ void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray,
     part.throughput /= static_cast<float>(kParts);
     for (std::uint32_t i = 0; i < kParts; ++i) {
         part.sampler = static_cast<std::uint32_t>(batch.samplers.size());
-        batch.samplers.emplace_back(settings.sampler, parts_seed_, pixel, sample * kParts + i);
-        scatter(batch, part, ray, at, bsdf, bounce);
+        const Sampler& sampler = batch.samplers.emplace_back(settings.sampler, parts_seed_, pixel, sample * kParts + i);
+        const ScatterNumbers numbers{sampler.get_1d(dimension(bounce, kLobe)),
+                                     sampler.get_2d(direction_dimension(bounce, light_sampling_))};
+        scatter(batch, part, ray, at, bsdf, numbers, bounce);
     }
 }
 
@@ -204,28 +246,24 @@ float PathTracer::scattering_weight(float bsdf_pdf, float light_pdf) const {
     return options_.mis ? power_heuristic(bsdf_pdf, light_pdf) : 0;
 }
 
-void PathTracer::sample_light(PathBatch& batch, const PathState& state, const Interaction& at, const AimedBsdf& bsdf,
-                              int bounce) const {
-    const Sampler& sampler = batch.samplers[state.sampler];
-    const auto light = scene_.lights().sample(at.receiver(), sampler.get_2d(light_dimension(bounce)));
-    if (!light) return;
-    const Vec3 wi = at.frame.to_local(light->wi);
-    if (!at.consistent(light->wi, wi)) return;
-    const BsdfValue f = bsdf.evaluate(wi, light->wi);
-    const float weight = options_.mis ? power_heuristic(light->pdf, f.pdf) : 1;
-    const Color arriving = state.throughput * f.value * light->radiance * (weight / light->pdf);
+/// Adds a light sample, to count where nothing is in its way.
+void PathTracer::add_light(PathBatch& batch, const PathState& state, const Interaction& at, const AimedBsdf& bsdf,
+                           const LightSample& light) const {
+    const Vec3 wi = at.frame.to_local(light.wi);
+    if (!at.consistent(light.wi, wi)) return;
+    const BsdfValue f = bsdf.evaluate(wi, light.wi);
+    const float weight = options_.mis ? power_heuristic(light.pdf, f.pdf) : 1;
+    const Color arriving = state.throughput * f.value * light.radiance * (weight / light.pdf);
     if (is_black(arriving)) return;
-    batch.shadow_rays.push_back(shadow_ray(at.ray_origin(light->wi), *light));
+    batch.shadow_rays.push_back(shadow_ray(at.ray_origin(light.wi), light));
     batch.shadow_light.push_back(arriving);
     batch.shadow_paths.push_back(state.path);
 }
 
 /// Sends the path on its way, or ends it.
 void PathTracer::scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at,
-                         const AimedBsdf& bsdf, int bounce) const {
-    const Sampler& sampler = batch.samplers[state.sampler];
-    const auto sample = bsdf.sample(sampler.get_1d(dimension(bounce, kLobe)),
-                                    sampler.get_2d(direction_dimension(bounce, light_sampling_)));
+                         const AimedBsdf& bsdf, const ScatterNumbers& numbers, int bounce) const {
+    const auto sample = bsdf.sample(numbers.lobe, numbers.direction);
     if (!sample) return;
     const Vec3 wi = at.frame.to_world(sample->wi);
     if (!at.consistent(wi, sample->wi)) return;
@@ -235,7 +273,7 @@ void PathTracer::scatter(PathBatch& batch, PathState state, const Ray& ray, cons
     const int roulette_start = rr_start_ + (sample->specular ? kSparedSpecularBounces : 0);
     if (options_.russian_roulette && bounce + 1 >= roulette_start && reach < kRouletteThroughput) {
         const float survival = reach / kRouletteThroughput;
-        if (sampler.get_1d(dimension(bounce, kRoulette)) >= survival) return;
+        if (batch.samplers[state.sampler].get_1d(dimension(bounce, kRoulette)) >= survival) return;
         state.throughput /= survival;
     }
     if (light_tracer_) state.light_ratio = light_ratio(state, ray, at, wi, *sample, bounce);

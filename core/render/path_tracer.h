@@ -45,6 +45,12 @@ public:
     }
 
 private:
+    /// In [0, 1).
+    struct ScatterNumbers {
+        float lobe;
+        Vec2 direction;
+    };
+
     void camera_rays(PathBatch& batch) const;
     void intersect(PathBatch& batch) const;
     void surface_interactions(PathBatch& batch) const;
@@ -53,16 +59,18 @@ private:
 
     Color environment_light(const PathState& state, const Vec3& direction) const;
     Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;
-    void sample_light(PathBatch& batch, const PathState& state, const Interaction& at, const AimedBsdf& bsdf,
-                      int bounce) const;
+    void shade_surfaces(PathBatch& batch, int bounce, bool last) const;
+    void draw_numbers(PathBatch& batch, int bounce) const;
+    bool aims(const PathState& state, int bounce) const;
+    void add_light(PathBatch& batch, const PathState& state, const Interaction& at, const AimedBsdf& bsdf,
+                   const LightSample& light) const;
     void split(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
                int bounce) const;
     void scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
-                 int bounce) const;
+                 const ScatterNumbers& numbers, int bounce) const;
     void add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const;
     void shade_matte(PathBatch& batch, int bounce) const;
     MatteTask matte_task(int bounce) const;
-    void sample_lights(MatteBlock& block) const;
     float light_ratio(const PathState& state, const Ray& ray, const Interaction& at, const Vec3& wi,
                       const BsdfSample& sample, int bounce) const;
     float scattering_weight(float bsdf_pdf, float light_pdf) const;

@@ -7,18 +7,6 @@
 
 namespace rayuela {
 
-namespace {
-
-void put(const Vec3& v, MatteBlock::Rows& rows, std::size_t i) {
-    for (int axis = 0; axis < 3; ++axis) rows[axis][i] = v[axis];
-}
-
-Vec3 vec(const MatteBlock::Rows& rows, std::size_t i) {
-    return {rows[0][i], rows[1][i], rows[2][i]};
-}
-
-}  // namespace
-
 void PathTracer::add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const {
     MatteBlock& block = batch.matte;
     const PathState& state = batch.states[i];
@@ -26,7 +14,7 @@ void PathTracer::add_matte(PathBatch& batch, std::size_t i, const Color& albedo,
     const Sampler& sampler = batch.samplers[state.sampler];
     const std::size_t to = block.size++;
     put(-batch.rays[i].direction, block.wo, to);
-    put(point.p, block.p, to);
+    put(point.p, block.light.p, to);
     put(point.p_error, block.p_error, to);
     put(point.ng, block.ng, to);
     put(point.ns, block.ns, to);
@@ -39,25 +27,6 @@ void PathTracer::add_matte(PathBatch& batch, std::size_t i, const Color& albedo,
     if (block.size == MatteBlock::kSize) shade_matte(batch, bounce);
 }
 
-/// Fills the light samples of the block.
-void PathTracer::sample_lights(MatteBlock& block) const {
-    const AreaLight* const only = scene_.lights().only_light();
-    if (only && only->kind != AreaLight::Kind::sphere && !only->texture) {
-        sample_flat_lamp(*only, block);
-        return;
-    }
-    for (std::size_t i = 0; i < block.size; ++i) {
-        const auto light =
-            scene_.lights().sample({vec(block.p, i), vec(block.receiver_n, i)}, {block.light_u[i], block.light_v[i]});
-        block.light_pdf[i] = light ? light->pdf : 0;
-        if (!light) continue;
-        put(light->wi, block.light_wi, i);
-        put(light->target, block.light_target, i);
-        put(light->radiance, block.light_radiance, i);
-        block.light_far[i] = light->distance == kInfinity ? 1 : 0;
-    }
-}
-
 /// Shades what has gathered, and empties the block.
 void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
     MatteBlock& block = batch.matte;
@@ -65,14 +34,14 @@ void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
     const MatteTask task = matte_task(bounce);
     if (task.samples_lights) {
         prepare_light_samples(task, block);
-        sample_lights(block);
+        scene_.lights().sample(block.light);
     }
     scatter_matte(task, block);
     for (std::uint64_t rest = block.casts_shadow_ray; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
         batch.shadow_rays.push_back({.origin = vec(block.shadow_origin, i),
                                      .direction = vec(block.shadow_direction, i),
-                                     .t_max = block.light_far[i] != 0 ? kInfinity : 1});
+                                     .t_max = block.light.distance[i] == kInfinity ? kInfinity : 1});
         batch.shadow_light.push_back(vec(block.shadow_light, i));
         batch.shadow_paths.push_back(batch.states[batch.matte_states[i]].path);
     }
@@ -87,7 +56,7 @@ void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
             state.light_ratio = light_ratio(state, ray, at, vec(block.next_direction, i), sample, bounce);
         }
         state.throughput = vec(block.next_throughput, i);
-        state.receiver = {vec(block.p, i), vec(block.receiver_n, i)};
+        state.receiver = block.light.receiver(i);
         state.bsdf_pdf = block.next_pdf[i];
         batch.next_rays.push_back({.origin = vec(block.next_origin, i), .direction = vec(block.next_direction, i)});
     }

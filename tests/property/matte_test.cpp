@@ -43,6 +43,15 @@ const Case kCases[] = {
      [](Scene& scene, MaterialId lamp) {
          add_object(scene, Sphere{Vec3(0.5f, 2.2f, 0.5f), 0.5f}, lamp);
      }},
+    {"few lamps of all kinds, one two-sided and one around everything",
+     [](Scene& scene, MaterialId lamp) {
+         const MaterialId both = add_material(scene, Emitter{{Color(2, 3, 1), nullptr}, true});
+         add_object(scene, Quad{Vec3(-3, 3, 1), Vec3(0.5f, 0, 0), Vec3(0, 0, 0.5f)}, both);
+         add_object(scene, Triangle{{Vec3(-2, 3, -1), Vec3(0, 3, 1), Vec3(2, 3.5f, -1)}}, lamp);
+         add_object(scene, Sphere{Vec3(1.5f, 2, 2), 0.2f}, lamp);
+         add_object(scene, Sphere{Vec3(-2.5f, 1, 0), 0.05f}, both);
+         add_object(scene, Sphere{Vec3(0, 1, 0), 30}, add_material(scene, Emitter{{Color(0.1f), nullptr}, true}));
+     }},
     {"many lamps",
      [](Scene& scene, MaterialId lamp) {
          for (int i = 0; i < 6; ++i) {

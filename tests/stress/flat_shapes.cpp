@@ -1,5 +1,5 @@
 #include "core/accel/surface_point.h"
-#include "core/math/frame.h"
+#include "core/math/basis.h"
 #include "core/shapes/intersect_box.h"
 #include "core/shapes/intersect_plane.h"
 #include "core/shapes/intersect_triangle.h"
@@ -27,7 +27,7 @@ Outcome plane_equation(double scale) {
         Ray ray{.origin = plane.point + log_uniform_vector(random, 1e-3f, 1e3f), .direction = random.direction()};
         const int kind = random.integer(0, 7);
         if (kind < 4) {
-            const Frame frame(glm::normalize(plane.normal));
+            const Basis frame(glm::normalize(plane.normal));
             const float phi = random.uniform(0, 2 * kPi), slope = log_uniform(random, 1e-7f, 1);
             ray.direction = std::cos(phi) * frame.s + std::sin(phi) * frame.t + slope * frame.n;
         } else if (kind == 4) {

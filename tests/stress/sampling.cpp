@@ -1,6 +1,6 @@
 #include "core/lights/area_light.h"
 #include "core/materials/fresnel.h"
-#include "core/math/frame.h"
+#include "core/math/basis.h"
 #include "core/math/sampler.h"
 #include "tests/stress/stress.h"
 #include "tests/support/oracle.h"
@@ -34,7 +34,7 @@ Outcome orthonormal_basis(double scale) {
             double sum = 0;
             for (std::uint64_t i = 0; i < n; ++i) {
                 const Vec3 normal = unit_vector(random);
-                const Frame frame(normal);
+                const Basis frame(normal);
                 const Vec3d s(frame.s), t(frame.t), z(frame.n);
                 const double errors[] = {glm::dot(s, s) - 1, glm::dot(t, t) - 1, glm::dot(s, t), glm::dot(s, z),
                                          glm::dot(t, z)};

@@ -2,7 +2,7 @@
 
 #include "core/accel/surface_point.h"
 #include "core/materials/bsdf.h"
-#include "core/math/frame.h"
+#include "core/math/basis.h"
 #include "core/math/sampler.h"
 #include "core/math/sampling.h"
 #include "tests/statistics.h"
@@ -154,7 +154,7 @@ TEST(LightTable, DensityIntegratesToTheChanceOfASample) {
                 // In a cone that holds the whole light.
                 const float one_minus_cos = 1 - std::cos(1.3f);
                 const Vec3 wi =
-                    Frame(-glm::normalize(p)).to_world(sample_uniform_cone(sampler.get_2d(2), one_minus_cos));
+                    Basis(-glm::normalize(p)).to_world(sample_uniform_cone(sampler.get_2d(2), one_minus_cos));
                 integral.add(double(world.pdf(p, wi)) / uniform_cone_pdf(one_minus_cos));
                 const auto s = world.table.sample({p}, sampler.get_2d(1));
                 // Of surfaces that hide each other only the first is found by a ray.

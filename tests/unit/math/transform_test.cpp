@@ -1,7 +1,7 @@
 #include "core/math/transform.h"
 
+#include "core/math/basis.h"
 #include "core/math/float_error.h"
-#include "core/math/frame.h"
 #include "core/math/precise.h"
 
 #include <gtest/gtest.h>
@@ -118,12 +118,12 @@ TEST(FloatError, OffsetMovesBeyondTheErrorToTheRightSide) {
     }
 }
 
-TEST(Frame, IsOrthonormalForAnyUnitNormal) {
+TEST(Basis, IsOrthonormalForAnyUnitNormal) {
     std::mt19937 engine(5);
     double squared = 0;
     int count = 0;
     const auto check = [&](const Vec3& n) {
-        const Frame f(n);
+        const Basis f(n);
         const Mat3 m(f.s, f.t, f.n);
         const Mat3 e = glm::transpose(m) * m - Mat3(1);
         for (int i = 0; i < 3; ++i) squared += glm::dot(e[i], e[i]), count += 3;

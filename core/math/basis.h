@@ -8,11 +8,11 @@ namespace rayuela {
 
 /// Right-handed orthonormal basis around a unit normal. Local space has the normal along +z.
 /// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
-struct Frame {
+struct Basis {
     Vec3 s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};
 
-    Frame() = default;
-    explicit Frame(const Vec3& normal) : n(normal) {
+    Basis() = default;
+    explicit Basis(const Vec3& normal) : n(normal) {
         const float sign = std::copysign(1.0f, n.z);
         const float a = -1.0f / (sign + n.z);
         const float b = n.x * n.y * a;

@@ -1,0 +1,269 @@
+#include "core/lights/few_lamps.h"
+
+// The kernels need no more than these.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/lights/few_lamps.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/lights/light_importance-inl.h"
+#include "core/math/float_error.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+using DoubleTag = hn::CappedTag<double, 8>;
+using Doubles = hn::Vec<DoubleTag>;
+using HalfFloatTag = hn::Rebind<float, DoubleTag>;
+
+HWY_INLINE Vec3Lanes load(const LightBlock::Rows& rows, std::size_t i) {
+    const FloatTag d;
+    return {hn::Load(d, rows[0] + i), hn::Load(d, rows[1] + i), hn::Load(d, rows[2] + i)};
+}
+HWY_INLINE void store(const Vec3Lanes& v, LightBlock::Rows& rows, std::size_t i) {
+    const FloatTag d;
+    hn::Store(v.x, d, rows[0] + i);
+    hn::Store(v.y, d, rows[1] + i);
+    hn::Store(v.z, d, rows[2] + i);
+}
+
+/// One lamp in all lanes.
+HWY_INLINE ClusterLanes cluster_of(const FewLamps& lamps, std::size_t k) {
+    const auto all = [&](const FewLamps::Rows& rows)
+                         HWY_ATTR { return all_lanes(Vec3(rows[0][k], rows[1][k], rows[2][k])); };
+    return {all(lamps.center),
+            all(lamps.axis),
+            all_lanes(lamps.radius2[k]),
+            all_lanes(lamps.cos_spread[k]),
+            all_lanes(lamps.sin_spread[k]),
+            all_lanes(lamps.power[k]),
+            hn::BitCast(FloatTag(), hn::Set(WordTag(), lamps.two_sided_bit[k]))};
+}
+
+/// Which lamp each lane samples.
+struct Choice {
+    FloatMask any;
+    hn::Vec<hn::RebindToSigned<FloatTag>> lamp;
+    Floats probability, remainder;
+};
+
+/// As LightTree::draw has it, the order of its sum included.
+HWY_INLINE Choice choose(const FewLamps& lamps, const Vec3Lanes& p, const Vec3Lanes& n, Floats u) {
+    const FloatTag d;
+    const hn::RebindToSigned<FloatTag> di;
+    const Floats zero = hn::Zero(d);
+    if (lamps.count == 1) return {hn::FirstN(d, kLanes), hn::Zero(di), all_lanes(1.0f), u};
+    Floats sent[FewLamps::kMost];
+    for (Floats& s : sent) s = zero;
+    const FloatMask facing = hn::Not(is_black(n));
+    for (std::size_t k = 0; k < lamps.count; ++k) sent[k] = importance(p, &n, facing, cluster_of(lamps, k));
+    const Floats total = ((sent[0] + sent[1]) + (sent[2] + sent[3])) + ((sent[4] + sent[5]) + (sent[6] + sent[7]));
+    const FloatMask usable = hn::And(hn::Gt(total, zero), hn::Lt(total, all_lanes(kInfinity)));
+    Floats rest = u * total, chosen = all_lanes(1.0f);
+    auto lamp = hn::Zero(di);
+    FloatMask open = usable;
+    for (std::size_t k = 0; k < lamps.count; ++k) {
+        const FloatMask here = hn::And(open, hn::Ne(sent[k], zero));
+        lamp = hn::IfThenElse(hn::RebindMask(di, here), hn::Set(di, static_cast<std::int32_t>(k)), lamp);
+        chosen = hn::IfThenElse(here, sent[k], chosen);
+        const FloatMask ends = hn::And(here, hn::Lt(rest, sent[k]));
+        rest = hn::IfThenElse(hn::AndNot(ends, here), rest - sent[k], rest);
+        open = hn::AndNot(ends, open);
+    }
+    const Floats probability = chosen / total;
+    const Floats remainder = hn::Min(hn::Max(rest / chosen, zero), all_lanes(1 - kUnitRoundoff));
+    return {hn::And(usable, hn::Gt(probability, zero)), lamp, probability, remainder};
+}
+
+/// As AreaLight's cone_of has it, a lane each.
+struct ConeLanes {
+    Vec3Lanes axis;
+    Floats distance, one_minus_cos;
+    FloatMask outside;
+};
+
+HWY_INLINE ConeLanes cone_of(const Vec3Lanes& origin, Floats size, const Vec3Lanes& p) {
+    const FloatTag d;
+    const DoubleTag dd;
+    const HalfFloatTag df;
+    alignas(64) float o[3][kLanes], from[3][kLanes], r[kLanes], axis[3][kLanes], distance[kLanes], cosine[kLanes];
+    alignas(64) float inside[kLanes];
+    const Floats origins[3] = {origin.x, origin.y, origin.z}, points[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; ++k) {
+        hn::Store(origins[k], d, o[k]);
+        hn::Store(points[k], d, from[k]);
+    }
+    hn::Store(size, d, r);
+    for (std::size_t i = 0; i < kLanes; i += hn::MaxLanes(dd)) {
+        const auto load = [&](const float* x) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, x + i)); };
+        const Doubles x = load(o[0]) - load(from[0]), y = load(o[1]) - load(from[1]), z = load(o[2]) - load(from[2]);
+        const Doubles d2 = x * x + y * y + z * z, radius = load(r), one = hn::Set(dd, 1);
+        const Doubles sin2 = radius * radius / d2, length = hn::Sqrt(d2);
+        const auto within = hn::Not(hn::Lt(sin2, one));
+        hn::Store(hn::DemoteTo(df, hn::IfThenElseZero(within, one)), df, inside + i);
+        hn::Store(hn::DemoteTo(df, x / length), df, axis[0] + i);
+        hn::Store(hn::DemoteTo(df, y / length), df, axis[1] + i);
+        hn::Store(hn::DemoteTo(df, z / length), df, axis[2] + i);
+        hn::Store(hn::DemoteTo(df, length), df, distance + i);
+        hn::Store(hn::DemoteTo(df, sin2 / (one + hn::Sqrt(one - sin2))), df, cosine + i);
+    }
+    return {{hn::Load(d, axis[0]), hn::Load(d, axis[1]), hn::Load(d, axis[2])},
+            hn::Load(d, distance),
+            hn::Load(d, cosine),
+            hn::Eq(hn::Load(d, inside), hn::Zero(d))};
+}
+
+/// A point of a lamp a lane.
+struct LampPoints {
+    Vec3Lanes point, normal;
+    Floats solid_angle_pdf;  ///< 0: drawn by area.
+};
+
+/// As AreaLight::sample_sphere has it.
+HWY_INLINE LampPoints sphere_points(const Vec3Lanes& origin, Floats size, const Vec3Lanes& p, const Vec2Lanes& u) {
+    const Floats zero = hn::Zero(FloatTag()), one = all_lanes(1.0f);
+    const ConeLanes cone = cone_of(origin, size, p);
+    const Vec3Lanes local = sample_uniform_cone(u, hn::IfThenElse(cone.outside, cone.one_minus_cos, all_lanes(2.0f)));
+    const Floats sin2_theta = local.x * local.x + local.y * local.y;
+    const Floats ratio = cone.distance / size;
+    const Floats cos_alpha = sin2_theta * ratio + local.z * hn::Sqrt(hn::Max(zero, one - sin2_theta * ratio * ratio));
+    const Floats sin_alpha = hn::Sqrt(hn::Max(zero, one - cos_alpha * cos_alpha));
+    const Floats length = hn::Sqrt(sin2_theta);
+    const FloatMask beside = hn::Gt(length, zero);
+    const Floats x = hn::IfThenElse(beside, local.x / length, one), y = hn::IfThenElseZero(beside, local.y / length);
+    const Vec3Lanes turned = BasisLanes(-cone.axis).to_world({sin_alpha * x, sin_alpha * y, cos_alpha});
+    const Vec3Lanes n = select(cone.outside, turned, local);
+    return {origin + n * size, n, hn::IfThenElseZero(cone.outside, one / (all_lanes(2 * kPi) * cone.one_minus_cos))};
+}
+
+/// The lamp of each lane.
+class ChosenLamps {
+public:
+    HWY_INLINE ChosenLamps(const FewLamps& lamps, const Choice& choice) : lamps_(lamps), lamp_(choice.lamp) {}
+
+    HWY_INLINE Floats of(const FewLamps::Row& row) const {
+        return lamps_.count == 1 ? all_lanes(row[0]) : hn::GatherIndex(FloatTag(), row.data(), lamp_);
+    }
+    HWY_INLINE Vec3Lanes of(const FewLamps::Rows& rows) const { return {of(rows[0]), of(rows[1]), of(rows[2])}; }
+    HWY_INLINE FloatMask is(const FewLamps::Row& row) const { return hn::Ne(of(row), hn::Zero(FloatTag())); }
+
+    HWY_INLINE LampPoints points(const Vec3Lanes& p, const Vec2Lanes& u) const {
+        if (!lamps_.any_flat) return sphere_points(of(lamps_.origin), of(lamps_.size), p, u);
+        const LampPoints flat = flat_points(u);
+        if (!lamps_.any_sphere) return flat;
+        const LampPoints sphere = sphere_points(of(lamps_.origin), of(lamps_.size), p, u);
+        const FloatMask round = is(lamps_.is_sphere);
+        return {select(round, sphere.point, flat.point), select(round, sphere.normal, flat.normal),
+                hn::IfThenElseZero(round, sphere.solid_angle_pdf)};
+    }
+
+private:
+    /// As AreaLight::sample_flat has it.
+    HWY_INLINE LampPoints flat_points(const Vec2Lanes& u) const {
+        const Vec2Lanes folded = sample_uniform_triangle(u);
+        const FloatMask triangle = is(lamps_.is_triangle);
+        const Floats x = hn::IfThenElse(triangle, folded.x, u.x), y = hn::IfThenElse(triangle, folded.y, u.y);
+        return {of(lamps_.origin) + of(lamps_.edge_u) * x + of(lamps_.edge_v) * y, of(lamps_.normal),
+                hn::Zero(FloatTag())};
+    }
+
+    const FewLamps& lamps_;
+    hn::Vec<hn::RebindToSigned<FloatTag>> lamp_;
+};
+
+/// As LightTable::sample and AreaLight::finish have it.
+HWY_ATTR void sample_lamps(const FewLamps& lamps, LightBlock& block) {
+    const FloatTag d;
+    const Floats zero = hn::Zero(d);
+    for (std::size_t i = 0; i < block.size; i += kLanes) {
+        const Vec3Lanes p = load(block.p, i);
+        const Floats u = hn::Min(hn::Load(d, block.u + i), all_lanes(1 - kUnitRoundoff));
+        const Choice choice = choose(lamps, p, load(block.n, i), u);
+        const ChosenLamps chosen(lamps, choice);
+        const LampPoints on_lamp = chosen.points(p, {choice.remainder, hn::Load(d, block.v + i)});
+        const Vec3Lanes way = on_lamp.point - p;
+        const Floats distance2 = dot(way, way), distance = hn::Sqrt(distance2);
+        const Vec3Lanes wi = way / distance, radiance = chosen.of(lamps.radiance);
+        const Floats towards = dot(on_lamp.normal, wi), cosine = hn::Neg(towards);
+        const FloatMask shines =
+            hn::Or(hn::Gt(cosine, zero), hn::And(hn::Lt(cosine, zero), chosen.is(lamps.two_sided)));
+        const Floats by_area = distance2 / (chosen.of(lamps.area) * hn::Abs(towards));
+        const Floats density = hn::IfThenElse(hn::Gt(on_lamp.solid_angle_pdf, zero), on_lamp.solid_angle_pdf, by_area);
+        const Floats pdf = density * choice.probability;
+        const FloatMask valid = hn::And(hn::And(hn::Gt(density, zero), hn::Lt(density, all_lanes(kInfinity))),
+                                        hn::And(hn::Gt(pdf, zero), hn::Gt(distance, zero)));
+        const FloatMask found = hn::And(hn::And(choice.any, valid), hn::AndNot(is_black(radiance), shines));
+        const Vec3Lanes error = all_lanes(Vec3(gamma(6))) * abs(p) + chosen.of(lamps.point_error);
+        hn::Store(hn::IfThenElseZero(found, pdf), d, block.pdf + i);
+        hn::Store(distance, d, block.distance + i);
+        store(wi, block.wi, i);
+        store(radiance, block.radiance, i);
+        store(offset_ray_origin(on_lamp.point, error, on_lamp.normal, -wi), block.target, i);
+    }
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rayuela {
+namespace {
+
+void put(const Vec3& v, FewLamps::Rows& rows, std::size_t k) {
+    for (int axis = 0; axis < 3; ++axis) rows[static_cast<std::size_t>(axis)][k] = v[axis];
+}
+
+}  // namespace
+
+HWY_EXPORT(sample_lamps);
+
+std::optional<FewLamps> FewLamps::of(std::span<const AreaLight> lights, const LightTree& tree) {
+    if (tree.empty() || tree.size() > kMost) return std::nullopt;
+    FewLamps result;
+    for (std::size_t k = 0; k < tree.size(); ++k) {
+        const AreaLight& light = lights[tree.size() == 1 ? *tree.only_light() : tree.light_in_lane(k)];
+        if (light.texture) return std::nullopt;
+        result.add(light);
+    }
+    if (tree.size() > 1) result.set_clusters(*tree.only_clusters());
+    return result;
+}
+
+void FewLamps::set_clusters(const LightClusters& clusters) {
+    for (std::size_t k = 0; k < count; ++k) {
+        for (std::size_t axis_of_space = 0; axis_of_space < 3; ++axis_of_space) {
+            center[axis_of_space][k] = clusters.center[axis_of_space][k];
+            axis[axis_of_space][k] = clusters.axis[axis_of_space][k];
+        }
+        radius2[k] = clusters.radius2[k];
+        cos_spread[k] = clusters.cos_spread[k];
+        sin_spread[k] = clusters.sin_spread[k];
+        power[k] = clusters.power[k];
+        two_sided_bit[k] = clusters.two_sided[k];
+    }
+}
+
+void FewLamps::add(const AreaLight& light) {
+    const std::size_t k = count++;
+    const bool sphere = light.kind == AreaLight::Kind::sphere;
+    (sphere ? any_sphere : any_flat) = true;
+    put(light.origin, origin, k);
+    put(light.edge_u, edge_u, k);
+    put(light.edge_v, edge_v, k);
+    put(light.normal, normal, k);
+    put(light.radiance, radiance, k);
+    put(light.point_error(), point_error, k);
+    size[k] = light.size;
+    area[k] = light.area();
+    is_sphere[k] = sphere ? 1 : 0;
+    is_triangle[k] = light.kind == AreaLight::Kind::triangle ? 1 : 0;
+    two_sided[k] = light.two_sided ? 1 : 0;
+}
+
+void FewLamps::sample(LightBlock& block) const {
+    HWY_DYNAMIC_DISPATCH(sample_lamps)(*this, block);
+}
+
+}  // namespace rayuela
+#endif

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/lights/area_light.h"
+#include "core/lights/light_block.h"
+#include "core/lights/light_tree.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace rayuela {
+
+/// Lamps so few that many points choose among them at once: what LightTable::sample does, the same to the last bit.
+class FewLamps {
+public:
+    static constexpr std::size_t kMost = 8;
+    using Row = std::array<float, kMost>;
+    using Rows = std::array<Row, 3>;
+
+    /// Nothing where there are more, or where one is textured.
+    static std::optional<FewLamps> of(std::span<const AreaLight> lights, const LightTree& tree);
+
+    /// Fills what is to be found.
+    void sample(LightBlock& block) const;
+
+    std::size_t count = 0;
+    bool any_sphere = false, any_flat = false;
+
+    /// As in LightClusters. Unused where there is but one lamp.
+    Rows center{}, axis{};
+    Row radius2{}, cos_spread{}, sin_spread{}, power{};
+    std::array<std::uint32_t, kMost> two_sided_bit{};
+
+    /// As in AreaLight.
+    Rows origin{}, edge_u{}, edge_v{}, normal{}, radiance{}, point_error{};
+    Row size{}, area{};
+    Row is_sphere{}, is_triangle{}, two_sided{};  ///< 1 or 0.
+
+private:
+    void add(const AreaLight& light);
+    void set_clusters(const LightClusters& clusters);
+};
+
+}  // namespace rayuela
