@@ -2,7 +2,6 @@
 
 #include "core/materials/fresnel.h"
 #include "core/materials/microfacet.h"
-#include "core/math/sampler.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +10,7 @@ namespace rayuela {
 namespace {
 
 constexpr int kSide = 32;
-constexpr int kTotalSamples = 256, kGrazingSamples = 128, kAverageSamples = 256;
+constexpr int kAverageSamples = 256;
 
 using Row = std::array<float, kSide>;
 
@@ -22,27 +21,30 @@ float interpolate(const Row& row, float x) {
     return glm::mix(row[i], row[i + 1], scaled - static_cast<float>(i));
 }
 
-/// Deterministic quadrature over the visible normals.
-GgxAlbedo integrate(float mu, float alpha, int samples) {
+/// Midpoints over the visible normals: half a turn, since the other half mirrors it, and strata of the spherical cap that
+/// are narrower the closer to the horizon light leaves.
+GgxAlbedo integrate(float mu, float alpha) {
+    constexpr int kTurns = 12, kStrata = 24;
     const Ggx ggx{alpha};
     const Vec3 wo(std::sqrt(1 - mu * mu), 0, mu);
     double total = 0, grazing = 0;
-    for (int i = 0; i < samples; ++i) {
-        const float half_cell = 0.5f / static_cast<float>(samples);
-        const Vec2 u(static_cast<float>(i) / static_cast<float>(samples) + half_cell,
-                     to_unit_float(reverse_bits(static_cast<std::uint32_t>(i))) + half_cell);
-        const Vec3 m = ggx.sample_visible(wo, u);
-        const Vec3 wi = reflect(wo, m);
-        if (wi.z <= 0) continue;
-        const float weight = ggx.g2_over_g1(wo, wi);
-        total += weight;
-        grazing += weight * schlick_weight(std::min(glm::dot(wo, m), 1.0f));
+    for (int j = 0; j < kStrata; ++j) {
+        const float rest = 1 - (static_cast<float>(j) + 0.5f) / kStrata;
+        for (int i = 0; i < kTurns; ++i) {
+            const Vec3 m = ggx.sample_visible(wo, Vec2((static_cast<float>(i) + 0.5f) / (2 * kTurns), 1 - rest * rest));
+            const Vec3 wi = reflect(wo, m);
+            if (wi.z <= 0) continue;
+            const float weight = 2 * rest * ggx.g2_over_g1(wo, wi);
+            total += weight;
+            grazing += weight * schlick_weight(std::min(glm::dot(wo, m), 1.0f));
+        }
     }
-    return {static_cast<float>(total / samples), static_cast<float>(grazing / samples)};
+    constexpr int kSamples = kTurns * kStrata;
+    return {static_cast<float>(total / kSamples), static_cast<float>(grazing / kSamples)};
 }
 
-/// A row for each roughness = sqrt(alpha), at equal steps. The loss of energy depends on mu / alpha near the horizon and
-/// on mu elsewhere, Fresnel's effect on mu: so each has its own coordinate.
+/// A row for each roughness = sqrt(alpha), from the least that is not smooth, closest together there. The loss of energy
+/// depends on mu / alpha near the horizon and on mu elsewhere, Fresnel's effect on mu: so each has its own coordinate.
 struct Tables {
     std::array<Row, kSide> total;  ///< Over total_position(mu).
     std::array<Row, kSide> ratio;  ///< grazing / total over sqrt(mu).
@@ -54,20 +56,28 @@ struct Tables {
         return p * alpha / (1 + alpha - p);
     }
 
+    /// Of the row at `position` in [0, 1].
+    static float alpha_at(float position) {
+        const float least = std::sqrt(kSmoothAlpha), roughness = glm::mix(least, 1.0f, position * position);
+        return roughness * roughness;
+    }
+    static float row_position(float alpha) {
+        const float least = std::sqrt(kSmoothAlpha);
+        return std::sqrt(clamp_unit((std::sqrt(alpha) - least) * (1 / (1 - least))));
+    }
+
     Tables() {
         for (int j = 0; j < kSide; ++j) {
-            const float roughness = static_cast<float>(j) / (kSide - 1);
-            const float alpha = std::max(roughness * roughness, kSmoothAlpha);
+            const float alpha = alpha_at(static_cast<float>(j) / (kSide - 1));
             for (int i = 0; i < kSide; ++i) {
                 const float x = static_cast<float>(i) / (kSide - 1);
-                total[j][i] = integrate(std::min(mu_at(x, alpha), 1.0f), alpha, kTotalSamples).total;
-                const GgxAlbedo albedo = integrate(x * x, alpha, kGrazingSamples);
+                total[j][i] = integrate(std::min(mu_at(x, alpha), 1.0f), alpha).total;
+                const GgxAlbedo albedo = integrate(x * x, alpha);
                 ratio[j][i] = albedo.grazing / albedo.total;
             }
         }
         for (int j = 0; j < kSide; ++j) {
-            const float roughness = static_cast<float>(j) / (kSide - 1);
-            const float alpha = roughness * roughness;
+            const float alpha = alpha_at(static_cast<float>(j) / (kSide - 1));
             double sum_total = 0, sum_grazing = 0;
             for (int i = 0; i < kAverageSamples; ++i) {
                 // mu dmu = d(mu^2) / 2: uniform in mu^2.
@@ -82,7 +92,7 @@ struct Tables {
     }
 
     GgxAlbedo directional(float mu, float alpha) const {
-        const float scaled = std::sqrt(alpha) * (kSide - 1);
+        const float scaled = row_position(alpha) * (kSide - 1);
         const int j = std::clamp(static_cast<int>(scaled), 0, kSide - 2);
         const float fraction = scaled - static_cast<float>(j);
         const float x = total_position(mu, alpha), y = std::sqrt(mu);
@@ -107,8 +117,8 @@ GgxAlbedo ggx_albedo(float mu, float alpha) {
 
 GgxAlbedo ggx_average_albedo(float alpha) {
     if (alpha < kSmoothAlpha) return {1, 1.0f / 21};
-    const float roughness = std::sqrt(alpha);
-    return {interpolate(tables().average_total, roughness), interpolate(tables().average_grazing, roughness)};
+    const float position = Tables::row_position(alpha);
+    return {interpolate(tables().average_total, position), interpolate(tables().average_grazing, position)};
 }
 
 }  // namespace rayuela

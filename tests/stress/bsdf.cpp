@@ -145,7 +145,8 @@ Outcome furnace_exact(double scale) {
                        });
 }
 
-/// Rough and compensated: between 0.99 and 1, by 3 standard errors. Figure: how far beyond.
+/// Rough and compensated: between 0.99 and 1, by 3 standard errors. Figure: how far beyond, at most what the tables of the
+/// facets' albedo are off by (see ggx_albedo): what facets lose is given back by them.
 Outcome furnace_compensated(double scale) {
     const std::uint64_t samples = scaled(1e6, scale, 4000);
     std::vector<MaterialCase> white;
@@ -241,7 +242,7 @@ std::vector<StressTest> bsdf_tests() {
     return {{34, "samples follow their density; it integrates to 1", "level / smallest p", 1, chi_square},
             {35, "weights are eval / pdf", "relative error", 1e-5, weights},
             {36, "furnace: Lambert, mirror and clear glass", "|albedo - 1|", 1e-6, furnace_exact},
-            {36, "furnace: rough and compensated in [0.99, 1]", "beyond, by 3 sigma", 0.01, furnace_compensated},
+            {36, "furnace: rough and compensated in [0.99, 1]", "beyond, by 3 sigma", 0.003, furnace_compensated},
             {38, "reciprocity", "relative error", 1e-5, reciprocity},
             {39, "extreme random numbers", "-", 0, extreme_numbers}};
 }

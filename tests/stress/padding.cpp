@@ -157,7 +157,7 @@ struct Case {
 
 std::vector<MeshPtr> meshes() {
     Random random(26);
-    const MeshPtr icosphere = make_icosphere(6);
+    const MeshPtr icosphere = make_icosphere(5);
     return {icosphere,
             moved(*icosphere, 1, Vec3(10)),
             make_ball(40, 1, Vec3(0), 0.3f, 26),
