@@ -143,6 +143,14 @@ private:
         std::size_t above_end = begin;
         for (std::size_t i = begin; i < end; ++i) {
             const KdReference reference = stack[i];
+            if (input_.split == KdSplit::sah && reference.box.hi[cut.axis] <= cut.plane) {
+                below.push_back(reference);
+                continue;
+            }
+            if (input_.split == KdSplit::sah && reference.box.lo[cut.axis] >= cut.plane) {
+                stack[above_end++] = reference;
+                continue;
+            }
             KdSides sides = split_reference(reference, input_.mesh, cut.axis, cut.plane);
             bool owned_below = !sides.below.empty();
             if (input_.split == KdSplit::median && reference.owned) {
