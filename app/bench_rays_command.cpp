@@ -2,6 +2,7 @@
 #include "app/bench_ray_sets.h"
 #include "app/cpu_clock.h"
 #include "app/embree_rival.h"
+#include "app/isa_option.h"
 #include "app/text_table.h"
 #include "core/math/statistics.h"
 
@@ -33,6 +34,7 @@ struct RaysOptions {
     std::filesystem::path json;
     int side = 512, repetitions = 11;
     bool median_split = false, list = false;
+    std::vector<std::string> isas{std::string(instruction_sets().front())};
 };
 
 /// Somebody who answers all rays of a set on one thread.
@@ -109,6 +111,13 @@ struct Structure {
     double cpu_seconds = 0;
 };
 
+/// A structure traced with one set of instructions.
+struct Tracer {
+    std::string name;
+    std::string_view isa;
+    const Accelerator* accelerator;
+};
+
 class RaysBench {
 public:
     RaysBench(const RaysOptions& options, const BenchMesh& mesh) : options_(options), view_(mesh), mesh_(mesh.make()) {}
@@ -124,6 +133,12 @@ public:
         embree_ = EmbreeRival::build(*mesh_, true);
         embree_fast_ = EmbreeRival::build(*mesh_, false);
         print_builds();
+        for (const Structure& structure : structures_) {
+            for (const std::string& isa : options_.isas) {
+                const std::string suffix = options_.isas.size() > 1 ? " " + isa : "";
+                tracers_.push_back({structure.name + suffix, isa, structure.accelerator.get()});
+            }
+        }
         TextTable table(2, {"rays", "who", "Mrays/s", "95%", "to Embree single robust", "95%", "differ, ppm"});
         for (const RaySet& set : make_ray_sets(*structures_.front().accelerator, view_, options_.side)) {
             const Result<void> measured = measure(set, table);
@@ -169,12 +184,11 @@ private:
 
     Result<void> measure(const RaySet& set, TextTable& table) {
         const std::size_t n = set.rays.size();
-        std::vector<Answers> answers(structures_.size());
+        std::vector<Answers> answers(tracers_.size());
         std::vector<Contestant> contestants;
-        for (std::size_t k = 0; k < structures_.size(); ++k) {
-            contestants.push_back({structures_[k].name, [] {},
-                                   [&, k] { answers[k].trace(*structures_[k].accelerator, set.rays, set.any_hit()); },
-                                   n});
+        for (std::size_t k = 0; k < tracers_.size(); ++k) {
+            contestants.push_back({tracers_[k].name, [this, k] { use_instruction_set(tracers_[k].isa); },
+                                   [&, k] { answers[k].trace(*tracers_[k].accelerator, set.rays, set.any_hit()); }, n});
         }
         const std::size_t few =
             std::min<std::size_t>(n, std::max<std::size_t>(16, 20'000'000 / mesh_->triangles.size()));
@@ -264,6 +278,7 @@ private:
     BenchMesh view_;
     std::shared_ptr<const TriangleMesh> mesh_;
     std::vector<Structure> structures_;
+    std::vector<Tracer> tracers_;
     Structure list_;
     std::unique_ptr<const EmbreeRival> embree_, embree_fast_;
     nlohmann::json result_;
@@ -298,6 +313,7 @@ BenchKind add_bench_rays(CLI::App& bench) {
         ->delimiter(',')
         ->check(CLI::Range(kMinLeafSize, kMaxLeafSize));
     command.add_flag("--median", options->median_split, "The median split beside the surface area heuristic");
+    add_isa(command, options->isas)->delimiter(',');
     command.add_flag("--list", options->list, "The list too (a few rays)");
     command.add_option("--side", options->side, "Primary rays a side of the image")->check(CLI::Range(16, 4096));
     command.add_option("--repetitions", options->repetitions, "Rounds, interleaved")->check(CLI::Range(1, 1000));

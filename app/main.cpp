@@ -1,4 +1,5 @@
 #include "app/bench_command.h"
+#include "app/isa_option.h"
 #include "app/reference_command.h"
 #include "app/subcommands.h"
 
@@ -64,6 +65,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
     add_size(command, "Size of the image", [&overrides](glm::ivec2 size) { overrides.size = size; });
     command.add_option("--seed", overrides.seed, "Seed of the sampler");
     add_threads(command, options.threads);
+    add_isa(command, options.isa)->expected(1);
     add_choice<AcceleratorKind>(command, "--accelerator", overrides.accelerator,
                                 {{"list", AcceleratorKind::list}, {"kd", AcceleratorKind::kd}},
                                 "Structure that finds hits");
@@ -140,6 +142,7 @@ Result<void> run(int argc, char** argv, int& usage_status) {
         usage_status = app.exit(error) == 0 ? 0 : kUsage;
         return {};
     }
+    for (const std::string& isa : render.isa) use_instruction_set(isa);
     if (app.got_subcommand("render")) return render.replay ? run_replay(render) : run_render(render);
     if (app.got_subcommand("screenshot")) return run_screenshot(screenshot);
     if (app.got_subcommand("info")) return run_info(info);

@@ -30,6 +30,7 @@ struct RenderOptions {
     std::filesystem::path scene, output, stats;  ///< `stats` empty: none is written.
     SceneOverrides overrides;
     int threads = 0;
+    std::vector<std::string> isa;          ///< Instructions to use; empty: the best.
     std::optional<ReplayedSample> replay;  ///< Instead of rendering.
 };
 

@@ -1,9 +1,8 @@
 #include "core/lights/light_table.h"
-#include "core/math/sampling.h"
+#include "core/math/isa.h"
 #include "tests/support/accel_scenes.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 // Light samples of many points at once and one by one: two programs for the same thing, and every bit must agree.
 
@@ -82,9 +81,8 @@ void expect_same(const Lamps& lamps, std::size_t size, Random& random) {
 }
 
 TEST(LightBlock, SamplesAsOneByOneOnEachInstructionSet) {
-    const std::int64_t supported = hwy::SupportedTargets();
-    for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
-        hwy::GetChosenTarget().Update(rest & -rest);
+    for (const std::string_view set : instruction_sets()) {
+        use_instruction_set(set);
         Random random(9);
         for (int round = 0; round < 200; ++round) {
             const int lamps = 1 + round % 10;  // Few, and more than few.
@@ -92,7 +90,7 @@ TEST(LightBlock, SamplesAsOneByOneOnEachInstructionSet) {
             expect_same(random_lamps(lamps, random), size, random);
         }
     }
-    hwy::GetChosenTarget().Update(supported);
+    use_instruction_set(instruction_sets().front());
 }
 
 }  // namespace
