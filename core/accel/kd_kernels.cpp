@@ -30,7 +30,8 @@ void trace_mesh(const KdScene& scene, std::uint32_t object, std::span<const std:
     const MeshTree& mesh = *scene.mesh_trees[object];
     RayBlockWriter(rays, hits, &scene.objects[object], mesh.tree.bounds).write(ids, block);
     MeshClient<kQuery> client(mesh, object, block, rays, hits);
-    trace_packets(mesh.tree, block, client);
+    // Rays to a lamp part ways: as packets through a mesh they took a tenth to a fifth longer.
+    if (kQuery == Query::closest) trace_packets(mesh.tree, block, client);
     trace_lanes(mesh.tree, block, client);
 }
 

@@ -58,7 +58,6 @@ public:
         active_ |= LaneBits{1} << lane;
     }
     LaneBits active() const { return active_; }
-    std::uint32_t node(std::size_t lane) const { return node_[lane]; }
     /// What begins behind `t` no longer counts for the lane's ray.
     void set_limit(std::size_t lane, float t) { limit_[lane] = t; }
     /// The lane's ray has its answer.
@@ -90,6 +89,8 @@ public:
         const FloatMask only_far = hn::AndNot(beyond, hn::Or(before, near_empty));
         const FloatMask only_near = hn::Or(beyond, far_empty);
         const FloatMask both = hn::AndNot(hn::Or(only_near, only_far), hn::RebindMask(d, is_inner));
+        hn::Store(pair.low, dw, word_);
+        hn::Store(pair.high, dw, data_);
         const Words children = hn::ShiftRight<KdNode::kChildrenShift>(pair.high);
         const Words near = hn::Add(children, backward);
         const Words far = hn::Add(children, hn::Xor(backward, one));
@@ -104,6 +105,20 @@ public:
         hn::Store(hn::IfThenElse(both, hn::Min(leave, end), end), d, end_);
         return hn::CountTrue(dw, is_inner);
     }
+
+    /// The lanes that stood at a leaf when the last step was taken, and those of them whose leaf holds something.
+    struct AtLeaf {
+        LaneBits any, filled;
+    };
+    HWY_INLINE AtLeaf at_leaf() const {
+        const WordTag dw;
+        const Words data = hn::Load(dw, data_), leaf = hn::Set(dw, KdNode::kLeaf);
+        const LaneBits any = active_ & bits_of(dw, hn::Eq(hn::And(data, hn::Set(dw, KdNode::kAxisMask)), leaf));
+        return {any, any & bits_of(dw, hn::Ne(data, leaf))};
+    }
+    /// Of the leaf that the lane stands at.
+    std::uint32_t first(std::size_t lane) const { return word_[lane]; }
+    std::uint32_t count(std::size_t lane) const { return data_[lane] >> KdNode::kCountShift; }
 
     /// Takes the lanes to the next nodes on their stacks that begin before their limits. Those that have none stop.
     HWY_INLINE void pop(LaneBits lanes) {
@@ -141,6 +156,7 @@ private:
     alignas(64) LaneAxes origin_{}, inverse_{};
     alignas(64) float pad_[kLanes] = {}, begin_[kLanes] = {}, end_[kLanes] = {}, limit_[kLanes] = {};
     alignas(64) std::uint32_t node_[kLanes] = {}, height_[kLanes] = {};
+    alignas(64) std::uint32_t word_[kLanes] = {}, data_[kLanes] = {};  ///< Of the nodes at the last step.
     alignas(64) std::uint64_t stack_[(kKdMaxDepth + 1) * kLanes];
     LaneBits active_ = 0;
 };
@@ -148,13 +164,19 @@ private:
 /// A ray that has come to a leaf with primitives.
 struct LeafVisit {
     std::uint32_t slot;
-    const KdNode* leaf;
+    std::uint32_t first, count;  ///< References of the leaf.
 };
 
 /// Many rays on their way through one tree.
 struct LaneGroups {
     LaneGroup group[kGroups];
 
+    /// Number of lanes that moved.
+    HWY_INLINE std::size_t step(const KdNode* nodes) {
+        std::size_t moved = 0;
+        for (LaneGroup& one : group) moved += one.step(nodes);
+        return moved;
+    }
     LaneGroup& of(std::size_t slot) { return group[slot / kLanes]; }
     void set_limit(std::size_t slot, float t) { of(slot).set_limit(slot % kLanes, t); }
     void stop(std::size_t slot) { of(slot).stop(slot % kLanes); }
@@ -187,20 +209,22 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
         }
         if (active == 0) return;
         const std::size_t few = static_cast<std::size_t>(active) / 4;
-        while (groups.group[0].step(nodes) + groups.group[1].step(nodes) > few) {
+        while (groups.step(nodes) > few) {
         }
 
         LeafVisit visits[kSlots];
         std::size_t count = 0;
-        LaneBits at_leaf[kGroups] = {};
+        LaneBits at_leaf[kGroups];
         for (std::size_t g = 0; g < kGroups; ++g) {
-            for (LaneBits lanes = groups.group[g].active(); lanes != 0; lanes &= lanes - 1) {
+            const LaneGroup& group = groups.group[g];
+            const LaneGroup::AtLeaf at = group.at_leaf();
+            at_leaf[g] = at.any;
+            for (LaneBits lanes = at.filled; lanes != 0; lanes &= lanes - 1) {
                 const std::size_t lane = first_lane(lanes);
-                const KdNode& node = nodes[groups.group[g].node(lane)];
-                visits[count] = {static_cast<std::uint32_t>(g * kLanes + lane), &node};
-                at_leaf[g] |= LaneBits{node.is_leaf()} << lane;
-                count += node.is_leaf() && node.count() > 0 ? 1 : 0;
-                if (node.is_leaf() && node.count() > 0) client.prefetch(node);
+                const LeafVisit visit{static_cast<std::uint32_t>(g * kLanes + lane), group.first(lane),
+                                      group.count(lane)};
+                client.prefetch(visit);
+                visits[count++] = visit;
             }
         }
         client.visit(std::span<const LeafVisit>(visits, count), groups);

@@ -14,8 +14,8 @@ namespace rayuela::HWY_NAMESPACE {
 using DoubleTag = hn::CappedTag<double, 8>;
 using Doubles = hn::Vec<DoubleTag>;
 
-/// Two groups of lanes take turns: while one waits for memory the other computes.
-inline constexpr std::size_t kGroups = 2, kSlots = kGroups * kLanes;
+/// Groups of lanes take turns: while one waits for memory the others compute.
+inline constexpr std::size_t kGroups = 3, kSlots = kGroups * kLanes;
 
 /// Pairs of words in memory, one a lane, at which the lanes' indices point.
 struct WordPairs {

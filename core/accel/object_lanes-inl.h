@@ -54,15 +54,15 @@ public:
         triangles_.start(slot, i, t_end(rays_[id], hits_[id]));
     }
 
-    HWY_INLINE void prefetch(const KdNode& leaf) const {
-        const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first();
-        for (std::size_t i = 0; i < kTriangleRuns * leaf.count(); i += 16) hwy::Prefetch(runs + i);
+    HWY_INLINE void prefetch(const LeafVisit& leaf) const {
+        const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first;
+        for (std::size_t i = 0; i < kTriangleRuns * leaf.count; i += 16) hwy::Prefetch(runs + i);
     }
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         for (const LeafVisit& visit : visits) {
-            const std::size_t n = visit.leaf->count(), first = visit.leaf->first();
+            const std::size_t n = visit.count, first = visit.first;
             const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * first;
             const std::uint32_t* const names = mesh_.tree.references.data() + first;
             for (std::size_t i = 0; i < n; i += kLanes) {
@@ -147,12 +147,12 @@ public:
         if (!leaves_.spheres.empty()) spheres_.start(slot, i, end);
     }
 
-    HWY_INLINE void prefetch(const KdNode&) const {}
+    HWY_INLINE void prefetch(const LeafVisit&) const {}
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         for (const LeafVisit& visit : visits) {
-            const ObjectLeaf& leaf = leaves_.leaves[visit.leaf->first()];
+            const ObjectLeaf& leaf = leaves_.leaves[visit.first];
             add_triangles(visit.slot, leaf);
             add_spheres(visit.slot, leaf);
             test_others(block_.id[triangles_.ray(visit.slot)], leaf);

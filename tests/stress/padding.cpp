@@ -33,9 +33,9 @@ std::uint64_t count_visits(const MeshTree& mesh, const TracedObject& object, std
         client.start(0, 0);
         group.start(0, block, 0);
         while (group.active() != 0) {
-            for (; !nodes[group.node(0)].is_leaf(); ++visits) group.step(nodes);
-            const LeafVisit visit{0, &nodes[group.node(0)]};
-            if (visit.leaf->count() > 0) {
+            while (group.step(nodes), group.at_leaf().any == 0) ++visits;
+            const LeafVisit visit{0, group.first(0), group.count(0)};
+            if (visit.count > 0) {
                 ++visits;
                 client.visit({&visit, 1}, lanes);
             }
