@@ -62,7 +62,7 @@ bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl&
     if (changes.restarts()) {
         restart();
     } else {
-        film_unpublished_ = film_shown_;  // The samples stay, but what is said beside the image has changed.
+        film_unpublished_ |= film_shown_;  // The samples stay, but what is said beside the image has changed.
     }
     return true;
 }
