@@ -45,14 +45,14 @@ void add_choice(CLI::App& command, const std::string& flag, std::optional<T>& va
     command.add_option_function<std::string>(flag, store, help)->check(CLI::IsMember(names));
 }
 
-/// Seconds above 0; unlike CLI::PositiveNumber it refuses what is not a number.
-CLI::Validator positive_time() {
-    const auto check = [](const std::string& text) -> std::string {
-        double seconds = 0;
-        const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0 && std::isfinite(seconds);
-        return good ? "" : fmt::format("\"{}\" is not a time above 0", text);
+/// Above 0; unlike CLI::PositiveNumber it refuses what is not a number.
+CLI::Validator positive(const std::string& what, const std::string& type = "FLOAT") {
+    const auto check = [what](const std::string& text) -> std::string {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
+        return good ? "" : fmt::format("\"{}\" is not a {} above 0", text, what);
     };
-    return CLI::Validator(check, "SECONDS");
+    return CLI::Validator(check, type);
 }
 
 void add_render(CLI::App& app, RenderOptions& options) {
@@ -61,7 +61,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
     command.add_option("scene", options.scene, "Scene: .scene.json, .gltf, .glb, .obj or .ply")->required();
     command.add_option("-o,--output", options.output, "Image: .png, .exr, .pfm or .hdr");
     command.add_option("--spp", overrides.spp, "Stop at so many samples a pixel")->check(CLI::Range(1, 1 << 30));
-    command.add_option("--time", overrides.seconds, "Stop after so many seconds")->check(positive_time());
+    command.add_option("--time", overrides.seconds, "Stop after so many seconds")->check(positive("time", "SECONDS"));
     add_size(command, "Size of the image", [&overrides](glm::ivec2 size) { overrides.size = size; });
     command.add_option("--seed", overrides.seed, "Seed of the sampler");
     add_threads(command, options.threads);
@@ -75,6 +75,14 @@ void add_render(CLI::App& app, RenderOptions& options) {
                         "How the kd-tree chooses its cuts");
     command.add_option("--max-bounces", overrides.max_bounces, "Scattering events; 0 shows emitters only")
         ->check(CLI::Range(0, 1 << 20));
+    command
+        .add_option("--adaptive", options.sampling.target_error,
+                    "Sample where the noise is, until the relative error is about this (0.02 is 2 %)")
+        ->check(CLI::Range(kMinTargetError, kMaxTargetError));
+    command
+        .add_option("--clamp", options.sampling.clamp,
+                    "Darken samples brighter than this; what the image loses by it is reported")
+        ->check(positive("value"));
     command.add_option("--stats", options.stats, "Write figures of the render to this JSON file");
     command
         .add_option_function<std::array<int, 3>>(

@@ -68,6 +68,10 @@ Result<void> write_stats(const std::filesystem::path& file, const RenderStatisti
                                           {"peak_memory_bytes", usage.peak_memory_bytes},
                                           {"rejected_samples", rejected},
                                           {"estimated_error", statistics.estimated_error},
+                                          {"mean_spp", statistics.spread.mean},
+                                          {"finished_pixels", statistics.spread.finished_pixels},
+                                          {"clamp_removed", statistics.clamp_loss.removed},
+                                          {"clamp_removed_share", statistics.clamp_loss.share},
                                           {"threads", statistics.threads}};
     std::ofstream stream(file);
     stream << stats.dump(2) << '\n';
@@ -83,13 +87,15 @@ Result<void> run_render(const RenderOptions& options) {
     auto loaded = load_scene(options.scene, options.overrides);
     if (!loaded) return tl::unexpected(loaded.error());
     auto scene = std::make_shared<Scene>(std::move(*loaded));
-    // A time limit on the command line alone means that long, whatever number of samples the file asks for.
-    if (options.overrides.seconds && !options.overrides.spp) scene->render.max_samples = 0;
-    if (scene->render.max_samples == 0 && scene->render.max_seconds == 0) scene->render.max_samples = kDefaultSpp;
+    // A limit of another kind on the command line stands alone, whatever number of samples the file asks for.
+    const bool adaptive = options.sampling.target_error > 0;
+    if ((options.overrides.seconds || adaptive) && !options.overrides.spp) scene->render.max_samples = 0;
+    if (scene->render.max_samples == 0 && scene->render.max_seconds == 0 && !adaptive)
+        scene->render.max_samples = kDefaultSpp;
     const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     std::signal(SIGINT, [](int) { interrupted = 1; });
-    RenderSession session({.threads = options.threads, .interactive = false});
+    RenderSession session({.threads = options.threads, .interactive = false, .sampling = options.sampling});
     session.submit(scene);
     std::shared_ptr<const Frame> frame;
     {
@@ -103,9 +109,15 @@ Result<void> run_render(const RenderOptions& options) {
         return fail("", "", "interrupted before the first sample: nothing is saved");
     if (auto written = write_image(options.output, frame->image); !written) return written;
     const RenderStatistics& statistics = frame->statistics;
+    const std::string spp = adaptive ? fmt::format("{:.1f} (up to {})", statistics.spread.mean, statistics.spp)
+                                     : std::to_string(statistics.spp);
     fmt::print("{}: {} x {}, {} spp in {:.2f} s ({:.2f} Msamples/s){}\n", options.output.string(), frame->image.width,
-               frame->image.height, statistics.spp, statistics.render_seconds, 1e-6 * statistics.samples_per_second,
+               frame->image.height, spp, statistics.render_seconds, 1e-6 * statistics.samples_per_second,
                interrupted ? ", interrupted" : "");
+    if (options.sampling.clamp > 0) {
+        fmt::print("The clamp has removed a luminance of {:.3g} a pixel: {:.3g} % of the image's energy.\n",
+                   statistics.clamp_loss.removed, 100 * statistics.clamp_loss.share);
+    }
     return options.stats.empty() ? Result<void>{} : write_stats(options.stats, statistics, load_seconds);
 }
 

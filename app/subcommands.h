@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/math/result.h"
+#include "core/render/sampling_options.h"
 #include "core/scene/scene.h"
 
 #include <filesystem>
@@ -29,6 +30,7 @@ struct ReplayedSample {
 struct RenderOptions {
     std::filesystem::path scene, output, stats;  ///< `stats` empty: none is written.
     SceneOverrides overrides;
+    SamplingOptions sampling;
     int threads = 0;
     std::vector<std::string> isa;          ///< Instructions to use; empty: the best.
     std::optional<ReplayedSample> replay;  ///< Instead of rendering.

@@ -1,12 +1,15 @@
 #include "core/render/accumulation.h"
 
 #include "core/accel/parallel.h"
+#include "core/render/clamp.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 
 #include <algorithm>
+#include <climits>
+#include <utility>
 
 namespace rayuela {
 
@@ -14,6 +17,8 @@ namespace {
 
 /// Tiles have at least this side where the film is large enough, and less than twice of it.
 constexpr int kTileSide = 32;
+/// Of the tiles that are blocks of adaptive sampling: smaller ones follow the noise more closely, but know it less well.
+constexpr int kAdaptiveTileSide = 16;
 /// Paths in flight that the intersection kernels want; smaller tiles carry several samples at once.
 constexpr std::size_t kBatchPaths = 1024;
 /// Paths from lamps that are traced together.
@@ -36,13 +41,22 @@ void for_each_pixel(const Tile& tile, const Use& use) {
 
 Accumulation::Accumulation(int width, int height)
     : film_(width, height), object_ids_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-    const int columns = std::max(1, width / kTileSide), rows = std::max(1, height / kTileSide);
+    make_tiles();
+}
+
+void Accumulation::make_tiles() {
+    const int side = adapts() ? kAdaptiveTileSide : kTileSide;
+    const int columns = std::max(1, film_.width() / side), rows = std::max(1, film_.height() / side);
+    if (tiles_.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) return;
+    tiles_.clear();
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
-            tiles_.push_back({.x0 = column * width / columns,
-                              .y0 = row * height / rows,
-                              .x1 = (column + 1) * width / columns,
-                              .y1 = (row + 1) * height / rows});
+            Tile tile{.x0 = column * film_.width() / columns,
+                      .y0 = row * film_.height() / rows,
+                      .x1 = (column + 1) * film_.width() / columns,
+                      .y1 = (row + 1) * film_.height() / rows};
+            tile.adaptive = AdaptiveBlock(tile.pixels());
+            tiles_.push_back(std::move(tile));
         }
     }
 }
@@ -53,7 +67,8 @@ std::vector<RejectedPixel> Accumulation::rejected_pixels() const {
         if (tile.samples == 0) continue;
         for_each_pixel(tile, [&](int x, int y) {
             const auto pixel = static_cast<std::uint32_t>(y * film_.width() + x);
-            const std::uint64_t missing = static_cast<std::uint64_t>(tile.samples) - film_.count(pixel);
+            const std::uint64_t missing =
+                static_cast<std::uint64_t>(tile.adaptive.shown(0) + tile.adaptive.shown(1)) - film_.count(pixel);
             if (missing > 0) found.push_back({pixel, static_cast<std::uint32_t>(missing)});
         });
     }
@@ -62,11 +77,41 @@ std::vector<RejectedPixel> Accumulation::rejected_pixels() const {
 }
 
 int Accumulation::samples() const {
-    return std::ranges::min_element(tiles_, {}, &Tile::samples)->samples;
+    int least = INT_MAX, most = 0;
+    for (const Tile& tile : tiles_) {
+        if (!is_finished(tile)) least = std::min(least, tile.samples);
+        most = std::max(most, tile.samples);
+    }
+    if (adapts() && wants_rounds()) least = std::min(least, static_cast<int>(film_.rounds()));
+    return least < INT_MAX ? least : most;
+}
+
+double Accumulation::unfinished() const {
+    return wants_rounds() ? 1 : 1 - spread().finished_pixels;
+}
+
+void Accumulation::set_options(const SamplingOptions& options) {
+    const SamplingOptions before = std::exchange(options_, options);
+    film_.set_equal_halves(adapts());
+    if (before.clamp != options.clamp || samples() == 0) return restart();
+    if (before.target_error == options.target_error) return;
+    rounds_finished_ = false;
+    for (Tile& tile : tiles_) {
+        // A smaller error needs more samples. Whether a larger one needs fewer is seen at the next decision.
+        if (!adapts() || options.target_error < before.target_error) tile.samples = tile.adaptive.resume(tile.samples);
+        if (before.target_error == 0) tile.adaptive.start_measuring(tile.samples);
+    }
 }
 
 void Accumulation::restart() {
-    for (Tile& tile : tiles_) tile.samples = 0;
+    make_tiles();
+    rounds_finished_ = false;
+    for (Tile& tile : tiles_) {
+        tile.samples = 0;
+        tile.clamped = {};
+        tile.adaptive.restart();
+        if (adapts()) tile.adaptive.start_measuring(0);
+    }
     film_.clear_rejected();
     film_.clear_splats();
 }
@@ -91,21 +136,63 @@ void Accumulation::clear(const Tile& tile) {
 RayCounts Accumulation::add_samples(const PathTracer& tracer, int samples, PassControl& control) {
     for (PathBatch& batch : batches_) batch.counts = {};
     for (LightBatch& batch : light_batches_) batch.counts = {};
+    for (int now = this->samples(); now < samples && !converged(); now = this->samples()) {
+        const int goal = adapts() ? std::min(samples, next_decision(now)) : samples;
+        add_to_all(tracer, goal, control);
+        if (this->samples() < goal) break;
+        if (adapts()) stop_where_enough(goal);
+    }
+    RayCounts counts;
+    for (const PathBatch& batch : batches_) counts += batch.counts;
+    for (const LightBatch& batch : light_batches_) counts += batch.counts;
+    return counts;
+}
+
+void Accumulation::add_to_all(const PathTracer& tracer, int samples, PassControl& control) {
     if (const LightTracer* light_tracer = tracer.light_tracer()) {
-        while (film_.rounds() < static_cast<std::uint32_t>(samples) && add_round(*light_tracer, control)) {
+        const auto lacks_rounds = [&] {
+            return (film_.rounds() == 0 || wants_rounds()) && film_.rounds() < static_cast<std::uint32_t>(samples);
+        };
+        while (lacks_rounds() && add_round(*light_tracer, control)) {
         }
     }
     const tbb::blocked_range<std::size_t> all(0, tiles_.size(), 1);
     const auto add_to_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
         PathBatch& batch = batches_.local();
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-            add_to_tile(tiles_[i], tracer, samples, control, batch);
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            if (!is_finished(tiles_[i])) add_to_tile(tiles_[i], tracer, samples, control, batch);
+        }
     };
     tbb::parallel_for(all, add_to_tiles, tbb::simple_partitioner());
-    RayCounts counts;
-    for (const PathBatch& batch : batches_) counts += batch.counts;
-    for (const LightBatch& batch : light_batches_) counts += batch.counts;
-    return counts;
+}
+
+/// Stops the halves of tiles that have `samples` and need no more, and the rounds.
+void Accumulation::stop_where_enough(int samples) {
+    if (next_decision(samples - 1) != samples) return;
+    std::array<double, 2> mean{};
+    double pixels = 0;
+    for (Tile& tile : tiles_) {
+        if (tile.samples == samples && !is_finished(tile)) tile.adaptive.update_noise(samples);
+        if (!tile.adaptive.knows_noise()) continue;
+        const auto size = static_cast<double>(tile.pixels());
+        for (std::size_t half = 0; half < 2; ++half) mean[half] += size * tile.adaptive.deviation(half);
+        pixels += size;
+    }
+    if (pixels == 0) return;
+    // A round costs about as much as a sample of every pixel.
+    const double of_rounds = wants_rounds() ? film_.splat_deviation() : 0;
+    for (double& deviation : mean) deviation = deviation / pixels + of_rounds;
+    const auto enough = [&](double deviation, double mean_deviation) {
+        return samples >= samples_wanted(deviation, mean_deviation, options_.target_error);
+    };
+    for (Tile& tile : tiles_) {
+        if (tile.samples != samples || !tile.adaptive.knows_noise()) continue;
+        for (std::size_t half = 0; half < 2; ++half) {
+            const std::size_t judge = 1 - half;
+            if (enough(tile.adaptive.deviation(judge), mean[judge])) tile.adaptive.stop(half);
+        }
+    }
+    rounds_finished_ |= film_.rounds() > 0 && enough(of_rounds, (mean[0] + mean[1]) / 2);
 }
 
 /// All light paths that go with one sample of every pixel, or none where `control` does not allow.
@@ -148,14 +235,81 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
             });
         }
         if (!tracer.trace(batch, control.cancelled)) return;
-        for (std::size_t i = 0; i < batch.ids.size(); ++i) {
-            const auto [pixel, sample] = batch.ids[i];
-            film_.add(pixel, sample, batch.radiance[i]);
-            if (sample == 0) object_ids_[pixel] = tracer.object_id(batch.first_object[i]);
-        }
+        add_to_film(tile, batch, tracer);
         tile.samples = end;
+        tile.adaptive.set_shown(end);
         control.paths_done += batch.ids.size();
     }
+}
+
+void Accumulation::add_to_film(Tile& tile, const PathBatch& batch, const PathTracer& tracer) {
+    for (std::size_t i = 0; i < batch.ids.size(); ++i) {
+        const auto [pixel, sample] = batch.ids[i];
+        if (sample == 0) object_ids_[pixel] = tracer.object_id(batch.first_object[i]);
+        Color radiance = batch.radiance[i];
+        if (adapts()) tile.adaptive.measure(i % tile.pixels(), sample, luminance(radiance));
+        if (!tile.adaptive.shows(sample)) continue;
+        if (options_.clamp > 0) {
+            const Color unclamped = std::exchange(radiance, clamped(radiance, options_.clamp));
+            if (!rejection(unclamped))
+                tile.clamped[sample_half(sample)] += static_cast<double>(luminance(unclamped) - luminance(radiance));
+        }
+        film_.add(pixel, sample, radiance);
+    }
+}
+
+std::uint64_t Accumulation::paths_to(int samples) const {
+    std::uint64_t paths = 0;
+    for (const Tile& tile : tiles_) {
+        if (!is_finished(tile))
+            paths += tile.pixels() * static_cast<std::uint64_t>(std::max(0, samples - tile.samples));
+    }
+    return paths;
+}
+
+SampleSpread Accumulation::spread() const {
+    const int most = samples();
+    double pixels = 0, traced = 0, finished = 0;
+    SampleSpread spread;
+    for (const Tile& tile : tiles_) {
+        const auto size = static_cast<double>(tile.pixels());
+        pixels += size;
+        traced += size * tile.samples;
+        if (!is_finished(tile)) continue;
+        finished += size;
+        spread.saved += tile.pixels() * static_cast<std::uint64_t>(std::max(0, most - tile.samples));
+    }
+    spread.mean = traced / pixels;
+    spread.finished_pixels = finished / pixels;
+    return spread;
+}
+
+std::vector<SampledBlock> Accumulation::sampled_blocks() const {
+    std::vector<SampledBlock> blocks;
+    if (!adapts()) return blocks;
+    for (const Tile& tile : tiles_) blocks.push_back({tile.x0, tile.y0, tile.x1, tile.y1, tile.samples});
+    return blocks;
+}
+
+/// Luminance taken from a pixel of the tile, the sum over its pixels: halves count as they do in the film.
+double Accumulation::clamped_a_sample(const Tile& tile) const {
+    const double a = tile.adaptive.shown(0), b = tile.adaptive.shown(1);
+    if (adapts() && b > 0) return (tile.clamped[0] / a + tile.clamped[1] / b) / 2;
+    return (tile.clamped[0] + tile.clamped[1]) / (a + b);
+}
+
+ClampLoss Accumulation::clamp_loss() const {
+    if (options_.clamp == 0) return {};
+    double removed = 0, shown = 0;
+    for (const Tile& tile : tiles_) {
+        if (tile.samples == 0) continue;
+        removed += clamped_a_sample(tile);
+        for_each_pixel(tile, [&](int x, int y) {
+            shown += static_cast<double>(luminance(Color(film_.mean(static_cast<std::size_t>(y * film_.width() + x)))));
+        });
+    }
+    const double pixels = static_cast<double>(object_ids_.size());
+    return {.removed = removed / pixels, .share = removed > 0 ? removed / (removed + shown) : 0};
 }
 
 }  // namespace rayuela

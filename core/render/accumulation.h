@@ -1,8 +1,10 @@
 #pragma once
 
+#include "core/render/adaptive_block.h"
 #include "core/render/film.h"
 #include "core/render/path_batch.h"
 #include "core/render/path_tracer.h"
+#include "core/render/sampling_options.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -30,20 +32,37 @@ public:
     const std::vector<std::uint32_t>& object_ids() const { return object_ids_; }
     /// Pixels that lack samples which the film has rejected, ascending.
     std::vector<RejectedPixel> rejected_pixels() const;
-    /// Samples that every pixel has.
+    /// Samples that have been traced for every pixel that is to get more; where none is, for those that have most.
     int samples() const;
+
+    /// May change at any time between passes; what is there is kept, but for another `clamp`, which restarts.
+    void set_options(const SamplingOptions& options);
+    /// All pixels are as the target error asks.
+    bool converged() const { return unfinished() == 0; }
+    /// Share of the work of another sample of every pixel that is still to be done.
+    double unfinished() const;
+    /// Camera paths to be traced until every pixel that is not finished has `samples`, if none finishes on the way.
+    std::uint64_t paths_to(int samples) const;
+    /// How the work is spread so far.
+    SampleSpread spread() const;
+    /// Samples traced for each pixel, by blocks; none where all have the same.
+    std::vector<SampledBlock> sampled_blocks() const;
+    /// What the clamp has taken from the image.
+    ClampLoss clamp_loss() const;
 
     /// Forgets all samples. Costs nothing now: a tile is cleared when its first sample comes.
     void restart();
     /// Clears the tiles that have no sample since the restart, for a look at an incomplete film.
     void clear_unstarted();
-    /// Traces until every pixel has `samples`, or as far as `control` allows, on the calling thread's task arena.
+    /// Traces until every pixel that is not finished has `samples`, or as far as `control` allows, on the calling thread's task arena.
     RayCounts add_samples(const PathTracer& tracer, int samples, PassControl& control);
 
 private:
     struct Tile {
         int x0, y0, x1, y1;
-        int samples = 0;
+        int samples = 0;  ///< Traced for each pixel.
+        AdaptiveBlock adaptive;
+        std::array<double, 2> clamped{};  ///< Luminance taken from the samples of each half.
 
         std::size_t pixels() const { return static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0); }
     };
@@ -51,8 +70,18 @@ private:
 
     bool add_round(const LightTracer& tracer, PassControl& control);
     void add_to_tile(Tile& tile, const PathTracer& tracer, int samples, PassControl& control, PathBatch& batch);
+    void add_to_all(const PathTracer& tracer, int samples, PassControl& control);
+    void add_to_film(Tile& tile, const PathBatch& batch, const PathTracer& tracer);
+    double clamped_a_sample(const Tile& tile) const;
     void clear(const Tile& tile);
+    bool adapts() const { return options_.target_error > 0; }
+    bool is_finished(const Tile& tile) const { return adapts() && tile.adaptive.stopped(); }
+    bool wants_rounds() const { return film_.rounds() > 0 && !(adapts() && rounds_finished_); }
+    void make_tiles();
+    void stop_where_enough(int samples);
 
+    SamplingOptions options_;
+    bool rounds_finished_ = false;  ///< Light paths bring no noise that matters.
     Film film_;
     std::vector<std::uint32_t> object_ids_;
     std::vector<Tile> tiles_;

@@ -5,13 +5,11 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rayuela {
 
 namespace {
-
-/// Keeps dark pixels from dominating the relative error; the usual value.
-constexpr double kDarkRegularizer = 0.01;
 
 double luminance(const Vec3d& c) {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
@@ -71,7 +69,12 @@ void Film::clear_rejected() {
 Vec3d Film::mean(std::size_t pixel) const {
     const Pixel& p = pixels_[pixel];
     const std::uint64_t n = count(pixel);
-    const Vec3d of_samples = n ? (p.sum[0] + p.sum[1]) / static_cast<double>(n) : Vec3d(0);
+    Vec3d of_samples(0);
+    if (weighs_halves_alike(p)) {
+        of_samples = 0.5 * (p.sum[0] / static_cast<double>(p.count[0]) + p.sum[1] / static_cast<double>(p.count[1]));
+    } else if (n > 0) {
+        of_samples = (p.sum[0] + p.sum[1]) / static_cast<double>(n);
+    }
     if (splats_.empty()) return of_samples;
     return of_samples + (splats_[pixel].sum[0] + splats_[pixel].sum[1]) / static_cast<double>(rounds());
 }
@@ -87,7 +90,8 @@ double Film::variance_of_mean(std::size_t pixel) const {
     if (n < 2) return 0;
     const Pixel& p = pixels_[pixel];
     const double y = luminance((p.sum[0] + p.sum[1]) / n);
-    const double of_samples = std::max(0.0, p.luminance_squared / n - y * y) / (n - 1);
+    const double of_sample = std::max(0.0, p.luminance_squared / n - y * y) * n / (n - 1);
+    const double of_samples = of_sample * (weighs_halves_alike(p) ? (1.0 / p.count[0] + 1.0 / p.count[1]) / 4 : 1 / n);
     if (splats_.empty()) return of_samples;
     // Splats are rare among the many paths of a round: their squares alone are nearly the variance.
     const double rounds_done = rounds();
@@ -100,6 +104,18 @@ Image Film::image() const {
         for (std::size_t i = range.begin(); i < range.end(); ++i) image.pixels[i] = Vec4(Color(mean(i)), 1.0f);
     });
     return image;
+}
+
+double Film::splat_deviation() const {
+    if (splats_.empty() || rounds_[0] == 0 || rounds_[1] == 0) return 0;
+    const double a = rounds_[0], b = rounds_[1];
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const double difference = luminance(splats_[i].sum[0] / a) - luminance(splats_[i].sum[1] / b);
+        const double shown = luminance(mean(i));
+        sum += difference * difference / (shown * shown + kDarkRegularizer);
+    }
+    return std::sqrt(sum / static_cast<double>(pixels_.size()) / (1 / a + 1 / b));
 }
 
 double Film::relative_error() const {
@@ -116,7 +132,8 @@ double Film::relative_error() const {
                 continue;
             }
             const Vec3d difference = half_mean(i, 0) - half_mean(i, 1);
-            const Vec3d square = difference * difference * (na * nb / ((na + nb) * (na + nb)));
+            const double weights = weighs_halves_alike(p) ? 0.25 : na * nb / ((na + nb) * (na + nb));
+            const Vec3d square = difference * difference * weights;
             const Vec3d m = mean(i);
             const Vec3d error = square / (m * m + kDarkRegularizer);
             sum.error += (error.x + error.y + error.z) / 3;

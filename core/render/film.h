@@ -11,6 +11,9 @@
 
 namespace rayuela {
 
+/// Added to the square of the truth where errors are relative, so that dark pixels do not dominate; the usual value.
+inline constexpr double kDarkRegularizer = 0.01;
+
 /// Sums of the samples of each pixel, and of what light paths bring to it, in double precision, in two halves (see sample_half). Different pixels may be
 /// added to from different threads; the sums of a pixel depend only on the order of its own samples.
 class Film {
@@ -28,8 +31,15 @@ public:
     /// Counts the round, whose splats have all been added. Rounds are numbered from 0 and come in order.
     void end_round(std::uint32_t round);
     std::uint32_t rounds() const { return rounds_[0] + rounds_[1]; }
+    /// Standard deviation of what a round brings to a pixel, over what the pixel shows, as a root of the mean over the pixels
+    /// of squares. 0 below two rounds.
+    double splat_deviation() const;
     /// Forgets all rounds.
     void clear_splats();
+
+    /// Whether a pixel is the mean of its halves' means instead of the mean of its samples. Where the number of samples in a
+    /// half depends on what the other half found, only that is unbiased (see AdaptiveBlock).
+    void set_equal_halves(bool equal) { equal_halves_ = equal; }
 
     /// Forgets the pixel's samples.
     void clear(std::size_t pixel) { pixels_[pixel] = {}; }
@@ -39,15 +49,15 @@ public:
     std::uint64_t count(std::size_t pixel) const {
         return pixels_[pixel].count[0] + std::uint64_t(pixels_[pixel].count[1]);
     }
-    /// Mean of the accepted samples; black where there are none.
+    /// What the pixel shows; black where it has no samples.
     Vec3d mean(std::size_t pixel) const;
-    /// Estimated variance of the mean's luminance: sample variance / count. 0 below two samples.
+    /// Estimated variance of the mean's luminance, for independent samples. 0 below two samples.
     double variance_of_mean(std::size_t pixel) const;
     /// The mean of all pixels, alpha 1. Runs on the calling thread's task arena.
     Image image() const;
     /// Estimate of the mean over pixels and channels of (mean - truth)^2 / (truth^2 + 0.01). The halves A and B of nA and
-    /// nB samples have the same expectation, so E[(A - B)^2] = s^2 (1/nA + 1/nB) and the mean's error, s^2 / (nA + nB), is
-    /// expected to be (A - B)^2 nA nB / (nA + nB)^2: without bias for independent samples. Two limits: stratified
+    /// nB samples have the same expectation, so E[(A - B)^2] = s^2 (1/nA + 1/nB); the error of the mean a A + b B, a + b = 1, is
+    /// s^2 (a^2 / nA + b^2 / nB), which for a and b as `mean` has them is (A - B)^2 a b: without bias for independent samples. Two limits: stratified
     /// samples, whose halves complement each other, err less than it says; and as truth^2 is taken from the mean, a pixel
     /// with a rare bright sample errs more. 0 while a pixel has an empty half.
     double relative_error() const;
@@ -68,8 +78,11 @@ private:
     bool count_rejection(const Color& radiance);
     /// Mean of one half; NaN while it is empty.
     Vec3d half_mean(std::size_t pixel, std::size_t half) const;
+    /// Whether the pixel's halves count the same, whatever they hold.
+    bool weighs_halves_alike(const Pixel& p) const { return equal_halves_ && p.count[0] > 0 && p.count[1] > 0; }
 
     int width_, height_;
+    bool equal_halves_ = false;
     std::vector<Pixel> pixels_;
     std::vector<Splats> splats_;  ///< Empty before the first round.
     std::array<std::uint32_t, 2> rounds_{};

@@ -20,13 +20,27 @@ enum class SessionPhase : std::uint8_t {
     building,   ///< Trees are being built.
     rendering,  ///< Samples are being added.
     paused,     ///< On request.
-    finished,   ///< The sample or time limit of the scene has been reached.
+    finished,   ///< The sample or time limit of the scene, or the target error, has been reached.
+};
+
+/// How many samples pixels have got.
+struct SampleSpread {
+    double mean = 0;             ///< Samples traced a pixel.
+    double finished_pixels = 0;  ///< Share of the pixels that get no more: they are as the target error asks.
+    /// Samples that finished pixels would have got if they had gone on with the others.
+    std::uint64_t saved = 0;
+};
+
+/// What the clamp has taken from an image.
+struct ClampLoss {
+    double removed = 0;  ///< Mean over the pixels of the luminance that is missing.
+    double share = 0;    ///< Of that in the mean luminance of the unclamped image.
 };
 
 /// What a session has done since accumulation last restarted (counters) or for the current scene (trees).
 struct RenderStatistics {
     SessionPhase phase = SessionPhase::idle;
-    int spp = 0;                    ///< Samples in every pixel.
+    int spp = 0;                    ///< Samples in every pixel that is not finished (see SampleSpread).
     std::uint64_t samples = 0;      ///< Camera paths.
     std::uint64_t rays = 0;         ///< Closest-hit rays.
     std::uint64_t shadow_rays = 0;  ///< Any-hit rays.
@@ -42,6 +56,17 @@ struct RenderStatistics {
     std::uint64_t memory_bytes = 0;  ///< Trees, meshes, images and film.
     std::uint64_t restarts = 0;      ///< How often accumulation has started anew since the session began.
     int threads = 0;
+    bool adaptive = false;  ///< Samples go where the noise is.
+    SampleSpread spread;
+    ClampLoss clamp_loss;
+};
+
+/// Pixels of a rectangle for which the same number of samples has been traced.
+struct SampledBlock {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< x1 and y1 are the first column and row outside.
+    int samples = 0;
+
+    bool operator==(const SampledBlock&) const = default;
 };
 
 /// A pixel that lacks samples because their value made no sense.
@@ -60,6 +85,7 @@ struct Frame {
     /// First object met by the first sample of each pixel, as ObjectId::value (0: none). Size of the image.
     std::vector<std::uint32_t> object_ids;
     std::vector<RejectedPixel> rejected_pixels;       ///< Ascending; none while coarse. Light paths are not among them.
+    std::vector<SampledBlock> sampled_blocks;         ///< Empty where all pixels have statistics.spp samples.
     std::shared_ptr<const Scene> scene;               ///< What it shows.
     std::shared_ptr<const RenderScene> render_scene;  ///< To pick in.
     RenderStatistics statistics;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 namespace rayuela {
 
@@ -48,6 +49,17 @@ void ProgressiveRenderer::set_threads(int threads) {
     arena_.initialize(wanted);
 }
 
+void ProgressiveRenderer::set_sampling(const SamplingOptions& sampling) {
+    const SamplingOptions before = std::exchange(sampling_, sampling);
+    if (!film_ || before == sampling) return;
+    film_->set_options(sampling);
+    if (before.clamp != sampling.clamp) {
+        restart();
+    } else {
+        film_unpublished_ = film_shown_;  // The numbers beside the image have changed.
+    }
+}
+
 bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl& control) {
     const SceneChanges changes = render_scene_ ? diff(render_scene_->scene(), *scene) : all_changes();
     const auto start = Clock::now();
@@ -55,7 +67,10 @@ bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl&
         arena_.execute([&] { return RenderScene::update(render_scene_.get(), std::move(scene), changes, control); });
     if (!updated) return false;
     const glm::ivec2 size(updated->scene().film.width, updated->scene().film.height);
-    if (!has_size(film_.get(), size)) film_ = std::make_unique<Accumulation>(size.x, size.y);
+    if (!has_size(film_.get(), size)) {
+        film_ = std::make_unique<Accumulation>(size.x, size.y);
+        film_->set_options(sampling_);
+    }
     render_scene_ = std::move(updated);
     memory_bytes_ = render_scene_->memory_bytes() + film_->film().memory_bytes();
     if (changes.geometry || changes.accel) build_seconds_ = seconds_since(start);
@@ -74,6 +89,7 @@ void ProgressiveRenderer::restart() {
     preview_done_ = false;
     counts_ = {};
     render_seconds_ = estimated_error_ = 0;
+    clamp_loss_ = {};
     taken_at_ = Clock::now();
     ++restarts_;
 }
@@ -87,6 +103,7 @@ ScheduleState ProgressiveRenderer::schedule_state() const {
             .max_samples = settings.max_samples,
             .max_seconds = settings.max_seconds,
             .samples = film_->samples(),
+            .unfinished = film_->unfinished(),
             .preview_done = preview_done_,
             .render_seconds = render_seconds_,
             .quiet_seconds = seconds_since(taken_at_),
@@ -99,9 +116,8 @@ ScheduleState ProgressiveRenderer::schedule_state() const {
 
 std::uint64_t ProgressiveRenderer::paths_of(const Pass& pass) const {
     const glm::ivec2 size = size_of(pass);
-    const int samples = pass.kind == Pass::Kind::coarse ? 1 : pass.samples - film_->samples();
-    return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) *
-           static_cast<std::uint64_t>(samples);
+    if (pass.kind != Pass::Kind::coarse) return film_->paths_to(pass.samples);
+    return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
 }
 
 glm::ivec2 ProgressiveRenderer::size_of(const Pass& pass) const {
@@ -153,10 +169,12 @@ std::shared_ptr<const Frame> ProgressiveRenderer::publish(SessionPhase phase, bo
     arena_.execute([&] {
         frame->image = source.film().image();
         estimated_error_ = coarse ? 0 : source.film().relative_error();
+        clamp_loss_ = coarse ? ClampLoss{} : source.clamp_loss();
     });
     frame->statistics = statistics(phase);
     const bool complete_samples =
         std::ranges::all_of(frame->statistics.rejected, [](auto count) { return count == 0; });
+    if (!coarse) frame->sampled_blocks = source.sampled_blocks();
     if (!coarse && !complete_samples) frame->rejected_pixels = source.rejected_pixels();
     if (!coarse) {
         film_shown_ = true;
@@ -189,7 +207,10 @@ RenderStatistics ProgressiveRenderer::statistics(SessionPhase phase) const {
             .accel = render_scene_->accelerator().stats(),
             .memory_bytes = memory_bytes_,
             .restarts = restarts_,
-            .threads = threads_};
+            .threads = threads_,
+            .adaptive = sampling_.target_error > 0,
+            .spread = film_->spread(),
+            .clamp_loss = clamp_loss_};
 }
 
 }  // namespace rayuela

@@ -24,6 +24,7 @@ public:
     bool take(std::shared_ptr<const Scene> scene, BuildControl& control);
     void set_threads(int threads);
     void set_paused(bool paused) { paused_ = paused; }
+    void set_sampling(const SamplingOptions& sampling);
     /// Throws all samples away.
     void restart();
 
@@ -42,7 +43,7 @@ public:
     bool publication_due() const;
     /// The newest image, with statistics as of now: the film, or the preview while the film has pixels without samples. `flush`: the film as it is.
     std::shared_ptr<const Frame> publish(SessionPhase phase, bool flush = false);
-    /// The estimated error in it is that of the last publication.
+    /// The estimated error and the clamp's loss in it are those of the last publication.
     RenderStatistics statistics(SessionPhase phase) const;
 
 private:
@@ -54,6 +55,7 @@ private:
 
     const bool interactive_;
     const PathTracerOptions options_;
+    SamplingOptions sampling_;
     bool paused_ = false;
     int threads_ = 0;
     tbb::task_arena arena_;
@@ -69,6 +71,7 @@ private:
     bool preview_done_ = false;
     RayCounts counts_;
     double render_seconds_ = 0, estimated_error_ = 0;
+    ClampLoss clamp_loss_;
     double seconds_per_path_ = 0, publish_seconds_ = 0;
     Clock::time_point published_at_{};
     std::uint64_t version_ = 0, restarts_ = 0;

@@ -22,6 +22,7 @@ struct Mail {
     bool flush = false;  ///< Publish what is there, complete or not, and pause.
     std::optional<bool> paused;
     std::optional<int> threads;
+    std::optional<SamplingOptions> sampling;
 };
 
 /// A build under way, and for what.
@@ -54,8 +55,10 @@ double progress(std::uint64_t done, std::uint64_t total) {
 }  // namespace
 
 struct RenderSession::Impl {
-    explicit Impl(const SessionOptions& options)
-        : renderer(options.interactive, options.threads), thread([this] { run(); }) {}
+    explicit Impl(const SessionOptions& options) : renderer(options.interactive, options.threads) {
+        renderer.set_sampling(options.sampling);
+        thread = std::thread([this] { run(); });
+    }
     ~Impl();
 
     template <typename Write>
@@ -154,6 +157,7 @@ bool RenderSession::Impl::receive(bool idle, Mail& received) {
 
 void RenderSession::Impl::handle(Mail& received) {
     if (received.threads) renderer.set_threads(*received.threads);
+    if (received.sampling) renderer.set_sampling(*received.sampling);
     if (received.paused) renderer.set_paused(*received.paused);
     if (received.scene) take(std::move(received.scene));
     if (received.restart && renderer.has_scene()) renderer.restart();
@@ -250,6 +254,10 @@ void RenderSession::set_paused(bool paused) {
 
 void RenderSession::set_threads(int threads) {
     impl_->send([&](Mail& mail) { mail.threads = threads; });
+}
+
+void RenderSession::set_sampling(const SamplingOptions& sampling) {
+    impl_->send([&](Mail& mail) { mail.sampling = sampling; });
 }
 
 void RenderSession::restart() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/render/frame.h"
+#include "core/render/sampling_options.h"
 
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@ namespace rayuela {
 struct SessionOptions {
     int threads = 0;          ///< Workers; 0 is one a hardware thread.
     bool interactive = true;  ///< Coarse passes after a restart, and frames published while rendering.
+    SamplingOptions sampling;
 };
 
 /// Progress that changes between frames.
@@ -36,6 +38,8 @@ public:
     void submit(std::shared_ptr<const Scene> scene);
     void set_paused(bool paused);
     void set_threads(int threads);
+    /// A new target error goes on with the samples that are there; another clamp restarts.
+    void set_sampling(const SamplingOptions& sampling);
     /// Throws the accumulated samples away and starts anew.
     void restart();
 
@@ -45,7 +49,7 @@ public:
     /// Called on the render thread after each publication, to wake a sleeping window. Must return at once.
     void on_publish(std::function<void()> callback);
 
-    /// Headless: blocks until the scene's limit is reached, or `interrupted` (asked about 20 times a second, with the
+    /// Headless: blocks until the scene's limit or the target error is reached, or `interrupted` (asked about 20 times a second, with the
     /// current status and statistics) returns true; then publishes and returns the frame of what is there.
     std::shared_ptr<const Frame> wait(
         const std::function<bool(const SessionStatus&, const RenderStatistics&)>& interrupted);

@@ -42,7 +42,8 @@ bool previewing(const ScheduleState& state) {
 int pass_samples(const ScheduleState& state) {
     if (state.samples == 0) return 1;
     const double target = state.interactive ? publish_interval(state) : kHeadlessPassSeconds;
-    return static_cast<int>(std::clamp(target / film_seconds(state), 1.0, double{kMaxPassSamples}));
+    const double seconds = film_seconds(state) * state.unfinished;
+    return static_cast<int>(std::clamp(target / seconds, 1.0, double{kMaxPassSamples}));
 }
 
 }  // namespace
@@ -57,7 +58,8 @@ Pass next_pass(const ScheduleState& state) {
     const bool complete = state.samples > 0;
     const bool sampled = state.max_samples > 0 && state.samples >= state.max_samples;
     const bool timed_out = state.max_seconds > 0 && complete && state.render_seconds >= state.max_seconds;
-    if (sampled || timed_out) return {.kind = Pass::Kind::finished};
+    const bool converged = complete && state.unfinished == 0;
+    if (sampled || timed_out || converged) return {.kind = Pass::Kind::finished};
     if (state.paused && complete) return {.kind = Pass::Kind::paused};
 
     int samples = state.samples + pass_samples(state);

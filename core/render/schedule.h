@@ -12,7 +12,8 @@ struct ScheduleState {
     int max_samples = 0;     ///< 0: no limit.
     double max_seconds = 0;  ///< 0: no limit.
 
-    int samples = 0;              ///< In every pixel of the film.
+    int samples = 0;        ///< In every pixel of the film that gets more.
+    double unfinished = 1;  ///< Share of a sample of every pixel that is left to do; 0: the target error is reached.
     bool preview_done = false;    ///< A coarse pass since accumulation restarted.
     double render_seconds = 0;    ///< In passes since the restart.
     double quiet_seconds = 0;     ///< Since the last edit.
@@ -29,11 +30,11 @@ struct Pass {
         wait,    ///< Nothing for `wait_seconds`, unless an edit comes: the window may draw what there is.
         full,    ///< The film.
         paused,  ///< Nothing, until resumed.
-        finished,  ///< Nothing: a limit is reached.
+        finished,  ///< Nothing: a limit or the target error is reached.
     };
     Kind kind = Kind::full;
     int divisor = 1;  ///< Of the film's width and height.
-    int samples = 0;  ///< Full: that every pixel shall have at the end.
+    int samples = 0;  ///< Full: that every pixel that is not finished shall have at the end.
     double wait_seconds = 0;
     double stop_at = 0;  ///< Value of render_seconds that cuts the pass short; 0: never.
 
