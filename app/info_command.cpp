@@ -131,7 +131,7 @@ void print(const std::vector<Skip>& skips, const RenderStatistics& statistics) {
 Result<void> print_skips(const Scene& scene, bool json) {
     const auto frame = glance_at(scene);
     if (!frame) return fail("", "", "the scene cannot be rendered");
-    const std::vector<Skip> skips = skips_of(*frame->render_scene);
+    const std::vector<Skip> skips = skips_of(*frame);
     if (json) {
         fmt::print("{}\n", describe(skips, frame->statistics).dump(2));
     } else {

@@ -11,8 +11,9 @@ void ConvergenceHistory::add(const RenderStatistics& statistics) {
         restarts_ = statistics.restarts;
     }
     if (statistics.estimated_error <= 0 || statistics.render_seconds <= 0) return;
-    if (!samples.empty() && statistics.spp < kSpacing * samples.back()) return;
-    samples.push_back(statistics.spp);
+    const double mean_samples = statistics.adaptive ? statistics.spread.mean : statistics.spp;
+    if (!samples.empty() && mean_samples < kSpacing * samples.back()) return;
+    samples.push_back(mean_samples);
     seconds.push_back(statistics.render_seconds);
     error.push_back(statistics.estimated_error);
 }

@@ -56,13 +56,15 @@ Editor::Editor(Preferences initial, int thread_count)
     : view(initial.view),
       preferences(std::move(initial)),
       threads(thread_count),
+      sampling(preferences.sampling),
       history_(empty_scene()),
       saved_(history_.current()),
       shown_(history_.current()),
       cache_(std::make_shared<AssetCache>()),
       autosave_time_(std::chrono::steady_clock::now()),
-      session_({.threads = thread_count, .interactive = true}),
-      session_threads_(thread_count) {
+      session_({.threads = thread_count, .interactive = true, .sampling = sampling.options()}),
+      session_threads_(thread_count),
+      session_sampling_(sampling.options()) {
     panels.show_quick_start = preferences.first_start && !preferences.folder.empty();
     std::error_code error;
     if (!preferences.folder.empty()) fs::rename(autosave_file(preferences), lost_file(preferences), error);
@@ -73,6 +75,7 @@ Editor::Editor(Preferences initial, int thread_count)
 Editor::~Editor() {
     discard_autosave();
     preferences.view = view;
+    preferences.sampling = sampling;
     save_preferences(preferences);
 }
 
@@ -83,6 +86,7 @@ void Editor::begin_frame(std::uint64_t gesture) {
     }
     if (paused != session_paused_) session_.set_paused(session_paused_ = paused);
     if (threads != session_threads_) session_.set_threads(session_threads_ = threads);
+    if (sampling.options() != session_sampling_) session_.set_sampling(session_sampling_ = sampling.options());
     if (film_size_ && !view.match_window) {
         film_size_.reset();
         show();

@@ -40,7 +40,7 @@ public:
     /// How the estimated error has fallen since accumulation last restarted.
     const ConvergenceHistory& convergence() const { return convergence_; }
 
-    /// Once a user-interface frame: takes the newest frame, finishes loads, tells the session of `paused` and `threads`.
+    /// Once a user-interface frame: takes the newest frame, finishes loads, tells the session of `paused`, `threads` and `sampling`.
     /// `gesture` is the identity of what the mouse or keyboard is holding (an ImGui id), 0 when nothing is: edits of one
     /// gesture are one step of undo.
     void begin_frame(std::uint64_t gesture);
@@ -106,6 +106,7 @@ public:
     Log log;
     bool paused = false;
     int threads = 0;
+    SamplingSettings sampling;
     bool wants_quit = false;
     std::function<void(Editor&)> unsaved_action;  ///< What waits for the answer to "save changes?".
 
@@ -136,6 +137,7 @@ private:
     RenderSession session_;
     bool session_paused_ = false;
     int session_threads_ = 0;
+    SamplingOptions session_sampling_;
 };
 
 }  // namespace rayuela

@@ -23,6 +23,8 @@ glm::ivec2 film_size(const RenderScene& scene) {
 std::vector<float> values_of(ViewMap map, const Frame& frame, const std::atomic<bool>& cancelled) {
     const RenderScene& scene = *frame.render_scene;
     switch (map) {
+        case ViewMap::samples:
+            return sample_map(frame.sampled_blocks, frame.statistics.spp, film_size(scene));
         case ViewMap::rejected:
             return rejected_map(frame.rejected_pixels, film_size(scene));
         case ViewMap::position_error:
@@ -67,10 +69,11 @@ void Health::update_map(const std::shared_ptr<const Frame>& frame, ViewMap wante
     if (wanted == ViewMap::image || !scene_) return map_work_.cancel();
 
     MapKey key{.map = wanted, .scene = scene_};
+    const RenderStatistics& statistics = frame->statistics;
+    if (wanted == ViewMap::samples || wanted == ViewMap::rejected) key.restarts = statistics.restarts;
+    if (wanted == ViewMap::samples) key.counted = statistics.samples;
     if (wanted == ViewMap::rejected) {
-        const RenderStatistics& statistics = frame->statistics;
-        key.restarts = statistics.restarts;
-        key.rejected = std::accumulate(statistics.rejected.begin(), statistics.rejected.end(), std::uint64_t{0});
+        key.counted = std::accumulate(statistics.rejected.begin(), statistics.rejected.end(), std::uint64_t{0});
     }
     if (map_ && map_->key == key) return;
     if (map_work_.is_busy()) {

@@ -42,7 +42,7 @@ private:
     struct MapKey {
         ViewMap map = ViewMap::image;
         SharedScene scene;
-        std::uint64_t restarts = 0, rejected = 0;  ///< Of the map of rejected samples.
+        std::uint64_t restarts = 0, counted = 0;  ///< Of maps of what the film counts.
 
         bool operator==(const MapKey&) const = default;
     };

@@ -20,7 +20,13 @@ struct Decades {
     int low, high;
 };
 
+/// Else it is a count.
+bool is_ratio(ViewMap map) {
+    return map == ViewMap::position_error || map == ViewMap::retrace;
+}
+
 Decades decades(ViewMap map) {
+    if (map == ViewMap::samples) return {0, 4};
     // One rejected sample must stand out from none.
     return map == ViewMap::rejected ? Decades{-1, 4} : Decades{-9, -3};
 }
@@ -33,7 +39,7 @@ const char* infinity_text(ViewMap map) {
 }  // namespace
 
 Color map_color(ViewMap map, float value) {
-    if (std::isnan(value) || (map == ViewMap::rejected && value == 0)) return kNothing;
+    if (std::isnan(value) || (!is_ratio(map) && value == 0)) return kNothing;
     if (std::isinf(value)) return kDiffers;
     const auto [low, high] = decades(map);
     return scale_color((std::log10(value) - static_cast<float>(low)) / static_cast<float>(high - low));
@@ -47,6 +53,7 @@ Image map_image(ViewMap map, std::span<const float> values, const glm::ivec2& si
 }
 
 std::string map_value_text(ViewMap map, float value) {
+    if (map == ViewMap::samples) return fmt::format("{:.0f} samples", value);
     if (map == ViewMap::rejected) return fmt::format("{:.0f} rejected", value);
     if (std::isnan(value)) return "nothing met";
     if (std::isinf(value)) return "float and double differ";
@@ -57,7 +64,7 @@ void draw_map_scale(const Canvas& canvas, ViewMap map) {
     if (map == ViewMap::image) return;
     const auto [low, high] = decades(map);
     std::vector<ScaleMark> marks;
-    for (int decade = map == ViewMap::rejected ? 0 : low; decade <= high; ++decade) {
+    for (int decade = is_ratio(map) ? low : 0; decade <= high; ++decade) {
         const float at = static_cast<float>(decade - low) / static_cast<float>(high - low);
         marks.push_back({at, fmt::format("{:g}", std::pow(10.0, decade))});
     }

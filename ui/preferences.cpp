@@ -43,6 +43,12 @@ void read_view(const json& values, ViewSettings& view) {
     }
 }
 
+void read_sampling(const json& values, SamplingSettings& sampling) {
+    if (!values.is_object()) return;
+    read(values, "adaptive", sampling.adaptive);
+    read(values, "target_error", sampling.target_error, kMinTargetError, kMaxTargetError);
+}
+
 }  // namespace
 
 fs::path default_config_folder() {
@@ -71,20 +77,24 @@ Preferences load_preferences(const fs::path& folder) {
     read(values, "recent_files", preferences.recent_files);
     read(values, "closed_panels", preferences.closed_panels);
     if (const auto view = values.find("view"); view != values.end()) read_view(*view, preferences.view);
+    if (const auto found = values.find("sampling"); found != values.end()) read_sampling(*found, preferences.sampling);
     return preferences;
 }
 
 void save_preferences(const Preferences& preferences) {
     if (preferences.folder.empty()) return;
     const ViewSettings& view = preferences.view;
-    const json values{{"ui_scale", preferences.ui_scale},
-                      {"recent_files", preferences.recent_files},
-                      {"closed_panels", preferences.closed_panels},
-                      {"view",
-                       {{"exposure", view.exposure},
-                        {"tone_map", kToneMapNames[static_cast<std::size_t>(view.tone_map)]},
-                        {"show_outline", view.show_outline},
-                        {"match_window", view.match_window}}}};
+    const json values{
+        {"ui_scale", preferences.ui_scale},
+        {"recent_files", preferences.recent_files},
+        {"closed_panels", preferences.closed_panels},
+        {"view",
+         {{"exposure", view.exposure},
+          {"tone_map", kToneMapNames[static_cast<std::size_t>(view.tone_map)]},
+          {"show_outline", view.show_outline},
+          {"match_window", view.match_window}}},
+        {"sampling",
+         {{"adaptive", preferences.sampling.adaptive}, {"target_error", preferences.sampling.target_error}}}};
     std::error_code error;
     fs::create_directories(preferences.folder, error);
     const fs::path file = preferences.folder / kFileName, partial = preferences.folder / "preferences.json.partial";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ui/sampling_settings.h"
 #include "ui/view_settings.h"
 
 #include <filesystem>
@@ -16,6 +17,7 @@ struct Preferences {
     float ui_scale = 1;  ///< Multiplies the display's own scale.
     bool first_start = true;
     ViewSettings view;
+    SamplingSettings sampling;
 };
 
 /// $XDG_CONFIG_HOME/rayuela, ~/.config/rayuela, or %APPDATA%/rayuela.

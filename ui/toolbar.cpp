@@ -209,14 +209,14 @@ void draw_status_line(Editor& editor, const glm::ivec2& pixel) {
     if (!frame || !frame->scene) return ImGui::NewLine();
 
     const FilmSettings& film = frame->scene->film;
-    std::string text =
-        fmt::format("{} spp     {} x {}     {}     {} samples/s", statistics.spp, film.width, film.height,
-                    duration_text(statistics.render_seconds), count_text(statistics.samples_per_second));
+    std::string text = fmt::format(
+        "{} spp     {} x {}     {}     {} samples/s",
+        statistics.adaptive ? fmt::format("{:.0f}", statistics.spread.mean) : std::to_string(statistics.spp),
+        film.width, film.height, duration_text(statistics.render_seconds), count_text(statistics.samples_per_second));
     if (statistics.estimated_error > 0) text += fmt::format("     error {:.2g}", statistics.estimated_error);
     if (!editor.view.fit) text += fmt::format("     zoom {:.0f} %", 100 * editor.view.zoom);
     ImGui::TextUnformatted(text.c_str());
-    tooltip(
-        "Samples in every pixel, size of the image, rendering time, speed and estimated relative mean squared error");
+    tooltip("Samples a pixel, size of the image, rendering time, speed and estimated relative mean squared error");
     ImGui::SameLine(0, ImGui::GetFontSize());
     const bool inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < film.width && pixel.y < film.height;
     if (inside && !frame->image.pixels.empty()) draw_pixel(editor, *frame, pixel);

@@ -8,12 +8,13 @@ enum class ToneMap : std::uint8_t { linear, aces, agx, filmic, false_color };
 inline constexpr const char* kToneMapNames[] = {"Linear", "ACES", "AgX", "Filmic", "False color"};
 
 /// What the viewport shows: the image, or a number of each pixel in false colours (see core/render/health_maps.h).
-enum class ViewMap : std::uint8_t { image, rejected, position_error, retrace };
+enum class ViewMap : std::uint8_t { image, samples, rejected, position_error, retrace };
 struct ViewMapText {
     const char *name, *tip;
 };
 inline constexpr ViewMapText kViewMaps[] = {
     {"Image", "The image that is being rendered."},
+    {"Samples", "How many samples each pixel has got: with adaptive sampling they go where the noise is."},
     {"Rejections", "How many samples of each pixel were left out because their value made no sense."},
     {"Position error",
      "How large the error bound of what each pixel sees is, relative to its distance from the camera."},

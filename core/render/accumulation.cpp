@@ -169,30 +169,20 @@ void Accumulation::add_to_all(const PathTracer& tracer, int samples, PassControl
 /// Stops the halves of tiles that have `samples` and need no more, and the rounds.
 void Accumulation::stop_where_enough(int samples) {
     if (next_decision(samples - 1) != samples) return;
-    std::array<double, 2> mean{};
-    double pixels = 0;
+    std::vector<const AdaptiveBlock*> blocks;
     for (Tile& tile : tiles_) {
         if (tile.samples == samples && !is_finished(tile)) tile.adaptive.update_noise(samples);
-        if (!tile.adaptive.knows_noise()) continue;
-        const auto size = static_cast<double>(tile.pixels());
-        for (std::size_t half = 0; half < 2; ++half) mean[half] += size * tile.adaptive.deviation(half);
-        pixels += size;
+        blocks.push_back(&tile.adaptive);
     }
-    if (pixels == 0) return;
     // A round costs about as much as a sample of every pixel.
     const double of_rounds = wants_rounds() ? film_.splat_deviation() : 0;
-    for (double& deviation : mean) deviation = deviation / pixels + of_rounds;
-    const auto enough = [&](double deviation, double mean_deviation) {
-        return samples >= samples_wanted(deviation, mean_deviation, options_.target_error);
-    };
+    std::array<double, 2> mean = mean_deviation(blocks);
+    for (double& deviation : mean) deviation += of_rounds;
     for (Tile& tile : tiles_) {
-        if (tile.samples != samples || !tile.adaptive.knows_noise()) continue;
-        for (std::size_t half = 0; half < 2; ++half) {
-            const std::size_t judge = 1 - half;
-            if (enough(tile.adaptive.deviation(judge), mean[judge])) tile.adaptive.stop(half);
-        }
+        if (tile.samples == samples) tile.adaptive.stop_where_enough(samples, mean, options_.target_error);
     }
-    rounds_finished_ |= film_.rounds() > 0 && enough(of_rounds, (mean[0] + mean[1]) / 2);
+    const double wanted = samples_wanted(of_rounds, (mean[0] + mean[1]) / 2, options_.target_error);
+    rounds_finished_ |= film_.rounds() > 0 && samples >= wanted;
 }
 
 /// All light paths that go with one sample of every pixel, or none where `control` does not allow.

@@ -69,6 +69,14 @@ int AdaptiveBlock::shown(std::size_t half) const {
     return samples_of_half(half, static_cast<int>(halves_[half].shown));
 }
 
+void AdaptiveBlock::stop_where_enough(int samples, const std::array<double, 2>& mean, double target_error) {
+    if (!knows_noise()) return;
+    for (std::size_t half = 0; half < halves_.size(); ++half) {
+        const std::size_t judge = 1 - half;
+        halves_[half].stopped |= samples >= samples_wanted(deviation(judge), mean[judge], target_error);
+    }
+}
+
 int AdaptiveBlock::resume(int samples) {
     for (Half& half : halves_) half.stopped = false;
     return std::min(samples, static_cast<int>(std::min(halves_[0].shown, halves_[1].shown)));
@@ -76,6 +84,18 @@ int AdaptiveBlock::resume(int samples) {
 
 int next_decision(int samples) {
     return std::max(AdaptiveBlock::kMinSamples, static_cast<int>(std::bit_floor(static_cast<unsigned>(samples))) * 2);
+}
+
+std::array<double, 2> mean_deviation(std::span<const AdaptiveBlock* const> blocks) {
+    std::array<double, 2> sum{};
+    double pixels = 0;
+    for (const AdaptiveBlock* block : blocks) {
+        if (!block->knows_noise()) continue;
+        const auto size = static_cast<double>(block->pixels());
+        for (std::size_t half = 0; half < 2; ++half) sum[half] += size * block->deviation(half);
+        pixels += size;
+    }
+    return {sum[0] / std::max(1.0, pixels), sum[1] / std::max(1.0, pixels)};
 }
 
 double samples_wanted(double deviation, double mean_deviation, double target_error) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace rayuela {
@@ -36,6 +37,7 @@ public:
     /// After `samples`, a power of two: works out the noise from those since the last time.
     void update_noise(int samples);
 
+    std::size_t pixels() const { return pixels_; }
     bool knows_noise() const { return updates_ > 0; }
     /// Standard deviation of a sample over the mean, as one half's samples show it.
     double deviation(std::size_t half) const { return std::sqrt(halves_[half].variance); }
@@ -51,7 +53,9 @@ public:
 
     bool stopped(std::size_t half) const { return halves_[half].stopped; }
     bool stopped() const { return stopped(0) && stopped(1); }
-    void stop(std::size_t half) { halves_[half].stopped = true; }
+    /// Stops each half that has as many samples as the other one finds it should: `samples` are traced, `mean` is the
+    /// image's mean_deviation. Does nothing before there is noise to go by.
+    void stop_where_enough(int samples, const std::array<double, 2>& mean, double target_error);
     /// Lets both halves go on; returns the sample to go on with, so that both get all of theirs.
     int resume(int samples);
 
@@ -72,6 +76,9 @@ private:
 
 /// The next number of samples at which blocks may be stopped.
 int next_decision(int samples);
+
+/// Mean over the image's pixels of the deviation, for each half; of the blocks that know it.
+std::array<double, 2> mean_deviation(std::span<const AdaptiveBlock* const> blocks);
 
 /// Samples a pixel that a block should have: `mean_deviation` is over all blocks of the image.
 double samples_wanted(double deviation, double mean_deviation, double target_error);

@@ -45,6 +45,18 @@ float relative_error(const SurfacePoint& point, const Ray& ray) {
 
 }  // namespace
 
+std::vector<float> sample_map(std::span<const SampledBlock> blocks, int elsewhere, const glm::ivec2& size) {
+    std::vector<float> map(pixels(size), static_cast<float>(elsewhere));
+    for (const SampledBlock& block : blocks) {
+        for (int y = block.y0; y < std::min(block.y1, size.y); ++y) {
+            for (int x = block.x0; x < std::min(block.x1, size.x); ++x)
+                map[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)] =
+                    static_cast<float>(block.samples);
+        }
+    }
+    return map;
+}
+
 std::vector<float> rejected_map(std::span<const RejectedPixel> rejected, const glm::ivec2& size) {
     std::vector<float> map(pixels(size));
     for (const RejectedPixel& r : rejected) {

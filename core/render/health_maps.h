@@ -6,9 +6,12 @@
 
 namespace rayuela {
 
-/// Maps of how well the arithmetic does in a view: a number for each pixel, row-major from the upper left. Those of camera
+/// Maps of how well sampling and arithmetic do in a view: a number for each pixel, row-major from the upper left. Those of camera
 /// rays take the ray through the pixel's centre and the centre of the lens; NaN where it meets nothing. They are empty when
 /// `cancelled` became true on the way.
+
+/// Samples that have been traced for each pixel: `elsewhere` where no block says.
+std::vector<float> sample_map(std::span<const SampledBlock> blocks, int elsewhere, const glm::ivec2& size);
 
 /// Samples of each pixel that the film has rejected.
 std::vector<float> rejected_map(std::span<const RejectedPixel> pixels, const glm::ivec2& size);

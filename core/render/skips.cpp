@@ -225,6 +225,21 @@ Skip attribute_of_vertices(const RenderScene& scene, std::string_view name,
             .unit = "bytes"};
 }
 
+Skip samples_of_finished_pixels(const RenderStatistics& statistics) {
+    const SampleSpread& spread = statistics.spread;
+    const bool active = spread.finished_pixels > 0;
+    return {.name = "Samples of finished pixels",
+            .state = active                ? SkipState::skipped
+                     : statistics.adaptive ? SkipState::absent
+                                           : SkipState::needed,
+            .why = !statistics.adaptive ? "Adaptive sampling is off: all pixels get the same number."
+                   : active ? fmt::format("{:.1f} % of the pixels are as the target error asks: the others go on.",
+                                          100 * spread.finished_pixels)
+                            : "No pixel is finished yet.",
+            .saved = spread.saved,
+            .unit = "samples"};
+}
+
 }  // namespace
 
 std::string_view name_of(SkipState state) {
@@ -250,6 +265,12 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
                                           "Meshes without them store none and are flat."));
     skips.push_back(attribute_of_vertices(scene, "Texture coordinates of vertices", &TriangleMesh::uvs,
                                           "Meshes without them store none."));
+    return skips;
+}
+
+std::vector<Skip> skips_of(const Frame& frame) {
+    std::vector<Skip> skips = skips_of(*frame.render_scene);
+    skips.push_back(samples_of_finished_pixels(frame.statistics));
     return skips;
 }
 

@@ -22,7 +22,7 @@ struct Skip {
     SkipState state = SkipState::absent;
     std::string why;  ///< Why it is left out, or what needs it; for a person.
 
-    /// How much is left out, in `unit` ("bytes", "objects"...), where that is known without rendering; else 0.
+    /// How much is left out, in `unit` ("bytes", "objects"...), where that is known; else 0.
     std::uint64_t saved = 0;
     std::string_view unit;
 
@@ -36,5 +36,7 @@ std::string_view name_of(SkipState state);
 
 /// All that the renderer leaves out where it can, and whether it can here. Derived from what the kernels read.
 std::vector<Skip> skips_of(const RenderScene& scene);
+/// The same, and what the render behind a frame has left out.
+std::vector<Skip> skips_of(const Frame& frame);
 
 }  // namespace rayuela

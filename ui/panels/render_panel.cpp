@@ -37,10 +37,11 @@ void draw_buttons(Editor& editor) {
     tooltip("Throws the samples away and starts anew (Ctrl+R).");
 }
 
-/// How far the image is towards the limit, in [0, 1]; nothing where there is no limit.
+/// How far the image is towards a limit or the target error, in [0, 1]; nothing where there is none.
 std::optional<double> limit_progress(const RenderSettings& render, const RenderStatistics& statistics) {
     std::optional<double> progress;
     if (render.max_samples > 0) progress = static_cast<double>(statistics.spp) / render.max_samples;
+    if (statistics.adaptive) progress = std::max(progress.value_or(0), statistics.spread.finished_pixels);
     if (render.max_seconds > 0)
         progress = std::max(progress.value_or(0), statistics.render_seconds / render.max_seconds);
     return progress;
@@ -135,6 +136,40 @@ void draw_paths(Editor& editor) {
     }
 }
 
+void draw_adaptive(SamplingSettings& sampling) {
+    field_label("Adaptive", "Samples go where the noise is.");
+    ImGui::Checkbox("##adaptive", &sampling.adaptive);
+    tooltip(
+        "Samples go where the noise is, and rendering stops where the target error is reached; no pixel gets fewer "
+        "than "
+        "32. Each half of the samples is stopped by what the other half shows, so the image does not become darker or "
+        "brighter by it. Off: all pixels get the same. What has been rendered stays.");
+    ImGui::BeginDisabled(!sampling.adaptive);
+    field_label("Target error", "Relative error at which the image is finished.");
+    float percent = 100 * sampling.target_error;
+    constexpr ImGuiSliderFlags kFlags = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
+    if (ImGui::SliderFloat("##target error", &percent, 0.5f, 20, "%.2f %%", kFlags))
+        sampling.target_error = std::clamp(percent / 100, kMinTargetError, kMaxTargetError);
+    tooltip(
+        "How far a pixel may typically be from the truth when rendering stops (the root of the mean squared relative "
+        "error). Half of it takes four times the samples. A smaller one goes on from the samples that are there.");
+    ImGui::EndDisabled();
+}
+
+void draw_clamp(SamplingSettings& sampling) {
+    field_label("Clamp fireflies", "Darkens single samples that are brighter than this.");
+    ImGui::Checkbox("##clamps", &sampling.clamps);
+    tooltip(
+        "Darkens samples brighter than this, which hides rare bright dots. It also takes light away that belongs "
+        "there: "
+        "Statistics says how much. Off by default; switching it restarts the image.");
+    if (!sampling.clamps) return;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    ImGui::DragFloat("##clamp", &sampling.clamp, 0.1f, 0.1f, 1e6f, "%.1f", ImGuiSliderFlags_AlwaysClamp);
+    tooltip("Largest value that a channel of a sample may have. Ctrl-click to type.");
+}
+
 void draw_limits(Editor& editor) {
     RenderSettings render = editor.scene().render;
     bool changed = false;
@@ -191,6 +226,9 @@ void draw_render_panel(Editor& editor) {
     draw_structure(editor);
     ImGui::SeparatorText("Display");
     draw_display(editor);
+    ImGui::SeparatorText("Sampling");
+    draw_adaptive(editor.sampling);
+    draw_clamp(editor.sampling);
     ImGui::SeparatorText("Limits");
     draw_limits(editor);
     ImGui::SeparatorText("Light paths");

@@ -18,7 +18,7 @@ struct Column {
 constexpr Column kColumns[] = {
     {"What this scene skips", "Work and memory that the renderer leaves out where a scene does not need it."},
     {"State", "Skipped: left out. Needed: done. Absent: nothing asks for it."},
-    {"Left out", "How much, where that is known without rendering."},
+    {"Left out", "How much, where that is known."},
     {"Done", "Counted since the image last started anew: none where it is skipped."},
     {"Why", "Why this scene can do without, or what needs it."},
 };
@@ -64,7 +64,7 @@ void draw_skips_panel(Editor& editor) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
     if (!ImGui::BeginTable("skips", static_cast<int>(std::size(kColumns)), kFlags)) return;
     draw_header();
-    for (const Skip& skip : skips_of(*editor.frame()->render_scene)) draw_skip(skip, editor.frame()->statistics);
+    for (const Skip& skip : skips_of(*editor.frame())) draw_skip(skip, editor.frame()->statistics);
     ImGui::EndTable();
 }
 

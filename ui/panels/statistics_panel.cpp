@@ -31,8 +31,23 @@ void draw_rendering(const RenderStatistics& s, float width) {
     const bool known = s.estimated_error > 0;
     std::uint64_t rejected = 0;
     for (const std::uint64_t count : s.rejected) rejected += count;
-    number_row("Samples a pixel", grouped_text(static_cast<std::uint64_t>(s.spp)),
-               "Camera paths that every pixel has got.");
+    if (s.adaptive) {
+        number_row("Samples a pixel", fmt::format("{:.1f}", s.spread.mean),
+                   "Camera paths that a pixel has got on average. View > Samples shows where they went.");
+        number_row("Most samples", grouped_text(static_cast<std::uint64_t>(s.spp)),
+                   "Camera paths of each pixel that is not finished.");
+        number_row("Finished", fmt::format("{:.1f} %", 100 * s.spread.finished_pixels),
+                   "Share of the pixels that have all samples that the target error asks for, and get no more.");
+    } else {
+        number_row("Samples a pixel", grouped_text(static_cast<std::uint64_t>(s.spp)),
+                   "Camera paths that every pixel has got.");
+    }
+    if (s.clamp_loss.removed > 0) {
+        number_row("Clamped away", fmt::format("{:.3g} ({:.2g} %)", s.clamp_loss.removed, 100 * s.clamp_loss.share),
+                   "Luminance that the firefly clamp has removed from a pixel on average, and its share of the image's "
+                   "energy. The image is darker than the truth by that much.",
+                   &theme::kWarning);
+    }
     number_row("Time", duration_text(s.render_seconds), "Rendering since the last restart, pauses left out.");
     number_row("Speed", quantity_text(s.samples_per_second, "samples/s"),
                "Camera paths a second over the whole image.");
