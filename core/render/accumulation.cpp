@@ -236,14 +236,12 @@ void Accumulation::add_to_film(Tile& tile, const PathBatch& batch, const PathTra
     for (std::size_t i = 0; i < batch.ids.size(); ++i) {
         const auto [pixel, sample] = batch.ids[i];
         if (sample == 0) object_ids_[pixel] = tracer.object_id(batch.first_object[i]);
-        Color radiance = batch.radiance[i];
+        const Color& traced = batch.radiance[i];
+        const Color radiance = options_.clamp > 0 ? clamped(traced, options_.clamp) : traced;
         if (adapts()) tile.adaptive.measure(i % tile.pixels(), sample, luminance(radiance));
         if (!tile.adaptive.shows(sample)) continue;
-        if (options_.clamp > 0) {
-            const Color unclamped = std::exchange(radiance, clamped(radiance, options_.clamp));
-            if (!rejection(unclamped))
-                tile.clamped[sample_half(sample)] += static_cast<double>(luminance(unclamped) - luminance(radiance));
-        }
+        if (radiance != traced && !rejection(traced))
+            tile.clamped[sample_half(sample)] += static_cast<double>(luminance(traced) - luminance(radiance));
         film_.add(pixel, sample, radiance);
     }
 }

@@ -132,6 +132,26 @@ def test_info():
     assert info["accelerator"]["bytes_a_primitive"] > 44
 
 
+def test_adaptive_and_clamp():
+    base = ["render", scenes / "cornell.scene.json", "--size", "64x64", "--stats", "adaptive.json", "-o", "adaptive.pfm"]
+
+    def stats(*arguments):
+        printed = run(*base, *arguments).stdout
+        return json.loads(pathlib.Path("adaptive.json").read_text()), printed
+
+    plain, _ = stats("--spp", 40)
+    assert plain["mean_spp"] == 40 and plain["finished_pixels"] == 0 and plain["clamp_removed"] == 0
+    adaptive, printed = stats("--adaptive", 0.1)
+    assert adaptive["finished_pixels"] == 1 and 32 <= adaptive["mean_spp"] <= adaptive["spp"]
+    assert adaptive["estimated_error"] < 1.2 * 0.1**2
+    assert f"up to {adaptive['spp']}" in printed
+    assert stats("--adaptive", 0.01, "--spp", 33)[0]["spp"] == 33
+    clamped, printed = stats("--spp", 40, "--clamp", 0.5)
+    assert 0 < clamped["clamp_removed_share"] < 1 and "clamp" in printed
+    for wrong in (["--adaptive", 0], ["--adaptive", "x"], ["--clamp", -1], ["--clamp", "nan"]):
+        assert subprocess.run([rayuela, *map(str, base + wrong)], capture_output=True).returncode == 2, wrong
+
+
 def test_skips():
     def skips(scene):
         printed = json.loads(run("info", scenes / f"{scene}.scene.json", "--skips", "--json").stdout)

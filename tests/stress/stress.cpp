@@ -23,9 +23,10 @@ std::string describe(const Ray& ray) {
 
 std::vector<StressTest> stress_tests() {
     std::vector<StressTest> all;
-    for (const auto& list : {sphere_tests, flat_shape_tests, watertight_tests, kd_build_tests, kd_invariant_tests,
-                             padding_tests, traversal_tests, offset_tests, light_leak_tests, sampling_tests, bsdf_tests,
-                             radiometry_tests, film_tests, camera_scale_tests, file_tests, determinism_tests}) {
+    for (const auto& list :
+         {sphere_tests, flat_shape_tests, watertight_tests, kd_build_tests, kd_invariant_tests, padding_tests,
+          traversal_tests, offset_tests, light_leak_tests, sampling_tests, bsdf_tests, radiometry_tests, film_tests,
+          adaptive_tests, camera_scale_tests, file_tests, determinism_tests}) {
         const std::vector<StressTest> tests = list();
         all.insert(all.end(), tests.begin(), tests.end());
     }

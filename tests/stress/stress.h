@@ -105,6 +105,7 @@ std::vector<StressTest> sampling_tests();
 std::vector<StressTest> bsdf_tests();
 std::vector<StressTest> radiometry_tests();
 std::vector<StressTest> film_tests();
+std::vector<StressTest> adaptive_tests();
 std::vector<StressTest> camera_scale_tests();
 std::vector<StressTest> file_tests();
 std::vector<StressTest> determinism_tests();

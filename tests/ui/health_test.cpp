@@ -136,6 +136,20 @@ TEST_F(HealthTest, RejectedSamplesAreCountedAndShownWhereTheyAre) {
     EXPECT_TRUE(editor().frame()->rejected_pixels.empty());
 }
 
+TEST_F(HealthTest, MapOfSamplesShowsWhereTheyWent) {
+    choose_map("Samples");
+    EXPECT_EQ(editor().view.map, ViewMap::samples);
+    ASSERT_TRUE(draw_until_mapped());
+    EXPECT_EQ(shown_value(kBall), 3);
+    EXPECT_EQ(shown_value(kSky), 3);
+    editor().sampling.target_error = 0.01f;
+    limit(0);
+    ASSERT_TRUE(draw_until([&] { return editor().frame()->statistics.phase == SessionPhase::finished; }));
+    ASSERT_TRUE(draw_until_mapped());
+    EXPECT_EQ(shown_value(kSky), 32) << "plain background needs no more";
+    EXPECT_GT(shown_value(kBall), 32);
+}
+
 TEST_F(HealthTest, PathsAreMeasuredOnDemandForOneScene) {
     const std::uint64_t count = restarts();
     run([&](ImGuiTestContext* script) {
@@ -241,6 +255,8 @@ TEST(MapColors, RunFromBlueToRedByTheLogarithm) {
     EXPECT_GT(scale_color(0.2f).z, scale_color(0.2f).x);
     EXPECT_NE(map_color(ViewMap::retrace, kInfinity), map_color(ViewMap::retrace, 1));
     EXPECT_NE(map_color(ViewMap::rejected, 0), map_color(ViewMap::rejected, 1)) << "one rejected sample can be seen";
+    EXPECT_EQ(map_value_text(ViewMap::samples, 64), "64 samples");
+    EXPECT_NE(map_color(ViewMap::samples, 32), map_color(ViewMap::samples, 64));
     EXPECT_EQ(map_value_text(ViewMap::rejected, 12), "12 rejected");
     EXPECT_EQ(map_value_text(ViewMap::position_error, 2e-7f), "error 2.00e-07");
     EXPECT_EQ(map_value_text(ViewMap::retrace, kInfinity), "float and double differ");

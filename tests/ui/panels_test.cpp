@@ -382,6 +382,55 @@ TEST_F(PanelTest, EveryControlHasATooltip) {
     }
 }
 
+TEST_F(PanelTest, AdaptiveSamplingFinishesAtTheTargetError) {
+    EXPECT_TRUE(editor().sampling.adaptive) << "on in the window";
+    run([&](ImGuiTestContext* script) {
+        script->WindowFocus("//Render");
+        script->ItemInputValue("//Render/##target error", 2.5f);
+    });
+    EXPECT_FLOAT_EQ(editor().sampling.target_error, 0.025f);
+    const std::uint64_t count = restarts();
+    limit(0);
+    ASSERT_TRUE(draw_until([&] { return statistics().phase == SessionPhase::finished; }));
+    EXPECT_EQ(statistics().spread.finished_pixels, 1);
+    EXPECT_LE(statistics().estimated_error, 1.2 * 0.025 * 0.025);
+    const SampleSpread coarse = statistics().spread;
+    EXPECT_GE(coarse.mean, 32);
+
+    // Less error, from the samples that are there.
+    run([&](ImGuiTestContext* script) { script->ItemInputValue("//Render/##target error", 1.0f); });
+    ASSERT_TRUE(draw_until(
+        [&] { return statistics().phase == SessionPhase::finished && statistics().spread.mean > 1.5 * coarse.mean; }));
+    EXPECT_LE(statistics().estimated_error, 1.2 * 0.01 * 0.01);
+    EXPECT_GT(statistics().spread.saved, 0u);
+
+    // Without it there is no end.
+    run([](ImGuiTestContext* script) { script->ItemClick("//Render/##adaptive"); });
+    EXPECT_FALSE(editor().sampling.adaptive);
+    const int most = statistics().spp;
+    ASSERT_TRUE(draw_until([&] { return !statistics().adaptive && statistics().spp > most; }));
+    EXPECT_EQ(statistics().phase, SessionPhase::rendering);
+    EXPECT_EQ(restarts(), count);
+}
+
+TEST_F(PanelTest, TheClampSaysWhatItTakes) {
+    EXPECT_FALSE(editor().sampling.clamps);
+    EXPECT_EQ(statistics().clamp_loss.removed, 0);
+    const std::uint64_t count = restarts();
+    run([](ImGuiTestContext* script) {
+        script->WindowFocus("//Render");
+        script->ItemClick("//Render/##clamps");
+        script->ItemInputValue("//Render/##clamp", 0.5f);
+    });
+    // The sky has 0.8.
+    ASSERT_TRUE(draw_until([&] { return is_rendered(4) && statistics().clamp_loss.share > 0.01; }));
+    EXPECT_GT(restarts(), count);
+    EXPECT_EQ(Color(editor().frame()->image.at(60, 2)), Color(0.5f));
+    run([](ImGuiTestContext* script) { script->ItemClick("//Render/##clamps"); });
+    ASSERT_TRUE(draw_until([&] { return is_rendered(4) && statistics().clamp_loss.removed == 0; }));
+    EXPECT_EQ(Color(editor().frame()->image.at(60, 2)), Color(0.8f));
+}
+
 TEST_F(PanelTest, SkipsFollowTheScene) {
     editor().paused = true;
     run([](ImGuiTestContext* script) { script->WindowFocus("//Skips"); });

@@ -17,6 +17,7 @@ TEST(Preferences, ComeBackAsTheyWereSaved) {
     preferences.view.tone_map = ToneMap::agx;
     preferences.view.match_window = false;
     preferences.closed_panels = {"Log"};
+    preferences.sampling = {.adaptive = false, .target_error = 0.125f, .clamps = true};
     remember_file(preferences, "/scenes/a.scene.json");
     remember_file(preferences, "/scenes/b.scene.json");
     save_preferences(preferences);
@@ -27,6 +28,9 @@ TEST(Preferences, ComeBackAsTheyWereSaved) {
     EXPECT_EQ(read.view.exposure, -1.5f);
     EXPECT_EQ(read.view.tone_map, ToneMap::agx);
     EXPECT_FALSE(read.view.match_window);
+    EXPECT_FALSE(read.sampling.adaptive);
+    EXPECT_EQ(read.sampling.target_error, 0.125f);
+    EXPECT_FALSE(read.sampling.clamps) << "what changes the image is off at the start";
     EXPECT_THAT(read.closed_panels, testing::ElementsAre("Log"));
     EXPECT_THAT(read.recent_files, testing::ElementsAre("/scenes/b.scene.json", "/scenes/a.scene.json"));
 }
