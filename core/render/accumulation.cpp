@@ -37,6 +37,12 @@ void for_each_pixel(const Tile& tile, const Use& use) {
     }
 }
 
+std::uint64_t rays_of(const auto& batches) {
+    std::uint64_t rays = 0;
+    for (const auto& batch : batches) rays += batch.counts.rays + batch.counts.shadow_rays;
+    return rays;
+}
+
 }  // namespace
 
 Accumulation::Accumulation(int width, int height)
@@ -114,6 +120,7 @@ void Accumulation::restart() {
     }
     film_.clear_rejected();
     film_.clear_splats();
+    round_rays_ = 0;
 }
 
 void Accumulation::clear_unstarted() {
@@ -174,15 +181,18 @@ void Accumulation::stop_where_enough(int samples) {
         if (tile.samples == samples && !is_finished(tile)) tile.adaptive.update_noise(samples);
         blocks.push_back(&tile.adaptive);
     }
-    // A round costs about as much as a sample of every pixel.
-    const double of_rounds = wants_rounds() ? film_.splat_deviation() : 0;
-    std::array<double, 2> mean = mean_deviation(blocks);
-    for (double& deviation : mean) deviation += of_rounds;
+    // Rounds are one more block, of the whole image.
+    const double deviation = wants_rounds() ? film_.splat_deviation() : 0;
+    const double cost =
+        static_cast<double>(round_rays_) / std::max(1u, film_.rounds()) / static_cast<double>(object_ids_.size());
+    std::array<double, 2> mean = mean_burden(blocks);
+    for (double& burden : mean) burden += deviation * std::sqrt(cost);
     for (Tile& tile : tiles_) {
         if (tile.samples == samples) tile.adaptive.stop_where_enough(samples, mean, options_.target_error);
     }
-    const double wanted = samples_wanted(of_rounds, (mean[0] + mean[1]) / 2, options_.target_error);
-    rounds_finished_ |= film_.rounds() > 0 && samples >= wanted;
+    if (!wants_rounds()) return;
+    const double wanted = samples_wanted(deviation, cost, (mean[0] + mean[1]) / 2, options_.target_error);
+    rounds_finished_ = deviation == 0 || samples >= wanted;
 }
 
 /// All light paths that go with one sample of every pixel, or none where `control` does not allow.
@@ -191,6 +201,7 @@ bool Accumulation::add_round(const LightTracer& tracer, PassControl& control) {
     const std::uint32_t round = film_.rounds();
     const std::size_t count = (tracer.paths() + kLightPaths - 1) / kLightPaths;
     std::vector<std::vector<Splat>> splats(count);
+    const std::uint64_t rays_before = rays_of(light_batches_);
     parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
         LightBatch& batch = light_batches_.local();
         for (std::size_t i = begin; i < end; ++i) {
@@ -202,6 +213,7 @@ bool Accumulation::add_round(const LightTracer& tracer, PassControl& control) {
         }
     });
     if (control.cancelled) return false;
+    round_rays_ += rays_of(light_batches_) - rays_before;
     // One thread in the order of the paths: sums do not depend on how many there are.
     for (const std::vector<Splat>& batch : splats) {
         for (const Splat& splat : batch) film_.splat(splat.pixel, round, splat.radiance);
@@ -216,7 +228,8 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
     const int samples_at_once = static_cast<int>(std::max<std::size_t>(1, kBatchPaths / tile.pixels()));
     while (tile.samples < samples) {
         if (control.cancelled || std::chrono::steady_clock::now() >= control.stop_at) return;
-        const int end = std::min(samples, tile.samples + samples_at_once);
+        int end = std::min(samples, tile.samples + samples_at_once);
+        if (adapts()) end = std::min(end, end_of_half(tile.samples));
         batch.ids.clear();
         for (int sample = tile.samples; sample < end; ++sample) {
             for_each_pixel(tile, [&](int x, int y) {
@@ -224,8 +237,13 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
                     {static_cast<std::uint32_t>(y * film_.width() + x), static_cast<std::uint32_t>(sample)});
             });
         }
+        const std::uint64_t rays_before = batch.counts.rays + batch.counts.shadow_rays;
         if (!tracer.trace(batch, control.cancelled)) return;
         add_to_film(tile, batch, tracer);
+        if (adapts()) {
+            tile.adaptive.add_cost(static_cast<std::uint32_t>(tile.samples),
+                                   batch.counts.rays + batch.counts.shadow_rays - rays_before);
+        }
         tile.samples = end;
         tile.adaptive.set_shown(end);
         control.paths_done += batch.ids.size();

@@ -81,6 +81,7 @@ private:
     void stop_where_enough(int samples);
 
     SamplingOptions options_;
+    std::uint64_t round_rays_ = 0;  ///< Of all rounds.
     bool rounds_finished_ = false;  ///< Light paths bring no noise that matters.
     Film film_;
     std::vector<std::uint32_t> object_ids_;

@@ -8,6 +8,9 @@ namespace rayuela {
 
 namespace {
 
+/// Earlier octaves are too short to be measured.
+constexpr std::uint32_t kFirstMeasured = AdaptiveBlock::kMinSamples / 2;
+
 /// Samples of one half among the first `samples` of a pixel.
 int samples_of_half(std::size_t half, int samples) {
     if (samples < 2) return half == 0 ? samples : 0;
@@ -26,12 +29,12 @@ void AdaptiveBlock::restart() {
 void AdaptiveBlock::start_measuring(int samples) {
     measured_from_ = samples;
     updates_ = 0;
-    for (Half& half : halves_) half.variance = half.sum = half.count = 0;
+    for (Half& half : halves_) half.variance = half.sum = half.count = half.rays = 0;
     contrast_.resize(pixels_);  // set to 0 where an octave begins
 }
 
 void AdaptiveBlock::measure(std::size_t pixel, std::uint32_t sample, float y) {
-    if (sample < kMinSamples / 2) return;
+    if (sample < kFirstMeasured) return;
     const int octave = std::bit_width(sample) - 1;
     if (std::has_single_bit(sample)) contrast_[pixel] = {};
     if (!std::isfinite(y) || y < 0) return;
@@ -40,6 +43,10 @@ void AdaptiveBlock::measure(std::size_t pixel, std::uint32_t sample, float y) {
     contrast_[pixel][half] += second ? -y : y;
     halves_[half].sum += static_cast<double>(y);
     halves_[half].count += 1;
+}
+
+void AdaptiveBlock::add_cost(std::uint32_t sample, std::uint64_t rays) {
+    if (sample >= kFirstMeasured) halves_[sample_half(sample)].rays += static_cast<double>(rays);
 }
 
 void AdaptiveBlock::update_noise(int samples) {
@@ -73,7 +80,7 @@ void AdaptiveBlock::stop_where_enough(int samples, const std::array<double, 2>& 
     if (!knows_noise()) return;
     for (std::size_t half = 0; half < halves_.size(); ++half) {
         const std::size_t judge = 1 - half;
-        halves_[half].stopped |= samples >= samples_wanted(deviation(judge), mean[judge], target_error);
+        halves_[half].stopped |= samples >= samples_wanted(deviation(judge), cost(judge), mean[judge], target_error);
     }
 }
 
@@ -82,24 +89,31 @@ int AdaptiveBlock::resume(int samples) {
     return std::min(samples, static_cast<int>(std::min(halves_[0].shown, halves_[1].shown)));
 }
 
+int end_of_half(int sample) {
+    if (sample < static_cast<int>(kFirstMeasured)) return kFirstMeasured;
+    const int octave = static_cast<int>(std::bit_floor(static_cast<unsigned>(sample)));
+    return sample < octave + octave / 2 ? octave + octave / 2 : 2 * octave;
+}
+
 int next_decision(int samples) {
     return std::max(AdaptiveBlock::kMinSamples, static_cast<int>(std::bit_floor(static_cast<unsigned>(samples))) * 2);
 }
 
-std::array<double, 2> mean_deviation(std::span<const AdaptiveBlock* const> blocks) {
+std::array<double, 2> mean_burden(std::span<const AdaptiveBlock* const> blocks) {
     std::array<double, 2> sum{};
     double pixels = 0;
     for (const AdaptiveBlock* block : blocks) {
         if (!block->knows_noise()) continue;
         const auto size = static_cast<double>(block->pixels());
-        for (std::size_t half = 0; half < 2; ++half) sum[half] += size * block->deviation(half);
+        for (std::size_t half = 0; half < 2; ++half)
+            sum[half] += size * block->deviation(half) * std::sqrt(block->cost(half));
         pixels += size;
     }
     return {sum[0] / std::max(1.0, pixels), sum[1] / std::max(1.0, pixels)};
 }
 
-double samples_wanted(double deviation, double mean_deviation, double target_error) {
-    return deviation * mean_deviation / (target_error * target_error);
+double samples_wanted(double deviation, double cost, double mean_burden, double target_error) {
+    return deviation / std::sqrt(cost) * mean_burden / (target_error * target_error);
 }
 
 }  // namespace rayuela

@@ -68,7 +68,7 @@ AdaptiveMean adaptive_mean(double target_error, std::mt19937& random, const Draw
             blocks[b].update_noise(end);
             result.samples += (end - begin) / static_cast<double>(kBlocks);
         }
-        const auto mean = mean_deviation(all);
+        const auto mean = mean_burden(all);
         for (AdaptiveBlock& block : blocks) {
             if (!block.stopped()) block.stop_where_enough(end, mean, target_error);
         }

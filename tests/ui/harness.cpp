@@ -20,7 +20,9 @@ UiTest::UiTest(glm::ivec2 size, float scale) {
     auto context = make_offscreen_context(size, scale);
     if (!context) throw std::runtime_error(to_string(context.error()));
     context_ = context->get();
-    application_ = std::make_unique<Application>(std::move(*context), Preferences{.first_start = false}, 2);
+    Preferences preferences{.first_start = false};
+    preferences.sampling.adaptive = false;  // a scene without a limit is rendered without end
+    application_ = std::make_unique<Application>(std::move(*context), std::move(preferences), 2);
 
     engine_.reset(ImGuiTestEngine_CreateContext());
     ImGuiTestEngineIO& io = ImGuiTestEngine_GetIO(engine_.get());

@@ -142,7 +142,7 @@ TEST_F(HealthTest, MapOfSamplesShowsWhereTheyWent) {
     ASSERT_TRUE(draw_until_mapped());
     EXPECT_EQ(shown_value(kBall), 3);
     EXPECT_EQ(shown_value(kSky), 3);
-    editor().sampling.target_error = 0.01f;
+    editor().sampling = {.adaptive = true, .target_error = 0.01f};
     limit(0);
     ASSERT_TRUE(draw_until([&] { return editor().frame()->statistics.phase == SessionPhase::finished; }));
     ASSERT_TRUE(draw_until_mapped());

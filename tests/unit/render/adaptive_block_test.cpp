@@ -29,14 +29,41 @@ AdaptiveBlock new_block() {
     return block;
 }
 
-TEST(AdaptiveBlock, SamplesFollowTheDeviationAndReachTheTarget) {
+TEST(AdaptiveBlock, SamplesReachTheTargetWithTheLeastWork) {
     // Errors of blocks of deviation s and n samples are s^2 / n: their mean is to be the target's square.
-    const double deviations[] = {0.1, 0.5, 1, 3}, target = 0.03;
-    const double mean = (0.1 + 0.5 + 1 + 3) / 4;
-    double error = 0;
-    for (const double s : deviations) error += s * s / samples_wanted(s, mean, target) / 4;
+    struct Case {
+        double deviation, cost;
+    };
+    const Case cases[] = {{0.1, 1}, {0.5, 9}, {1, 4}, {3, 16}};
+    const double target = 0.03;
+    double burden = 0, error = 0, work = 0, uniform_error = 0, uniform_work = 0;
+    for (const Case& c : cases) burden += c.deviation * std::sqrt(c.cost) / 4;
+    for (const Case& c : cases) {
+        const double samples = samples_wanted(c.deviation, c.cost, burden, target);
+        error += c.deviation * c.deviation / samples / 4;
+        work += c.cost * samples;
+        uniform_error += c.deviation * c.deviation / 4;
+        uniform_work += c.cost;
+    }
     EXPECT_NEAR(error, target * target, 1e-12);
-    EXPECT_NEAR(samples_wanted(3, mean, target) / samples_wanted(0.5, mean, target), 6, 1e-12);
+    EXPECT_LT(work, uniform_work * uniform_error / (target * target));
+    const double dearer = samples_wanted(1, 4, burden, target), cheaper = samples_wanted(1, 1, burden, target);
+    EXPECT_NEAR(cheaper / dearer, 2, 1e-12);
+}
+
+TEST(AdaptiveBlock, CostIsThatOfTheHalf) {
+    AdaptiveBlock block(kPixels);
+    block.start_measuring(0);
+    EXPECT_EQ(block.cost(0), 1);
+    for (int sample = 0; sample < 64; sample = end_of_half(sample)) {
+        const int end = end_of_half(sample), half = static_cast<int>(sample_half(static_cast<std::uint32_t>(sample)));
+        for (int i = std::max(16, sample); i < end; ++i)
+            EXPECT_EQ(static_cast<int>(sample_half(static_cast<std::uint32_t>(i))), half);
+        for (int i = sample; i < end; ++i) block.measure(0, static_cast<std::uint32_t>(i), 1);
+        block.add_cost(static_cast<std::uint32_t>(sample), static_cast<std::uint64_t>((end - sample) * (half + 3)));
+    }
+    EXPECT_EQ(block.cost(0), 3);
+    EXPECT_EQ(block.cost(1), 4);
 }
 
 TEST(AdaptiveBlock, DecidesAtPowersOfTwo) {
