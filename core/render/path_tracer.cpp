@@ -148,7 +148,9 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             continue;
         }
         batch.counts.textured_hits += material.textured;
-        batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction);
+        const Interaction& at = batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction);
+        // Not with the block: parts of a path add their light in the same order whatever paths are traced beside it.
+        if (material.emissive) batch.radiance[state.path] += emitted_light(state, ray, hit, at);
         batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
@@ -167,7 +169,6 @@ void PathTracer::shade_surfaces(PathBatch& batch, int bounce, bool last) const {
         const std::size_t i = block.states[k];
         const PathState& state = batch.states[i];
         const Ray& ray = batch.rays[i];
-        if (at.material.emissive) batch.radiance[state.path] += emitted_light(state, ray, batch.hits[i], at);
         if (last) continue;
         const AimedBsdf bsdf(at, aims(state, bounce) ? &scene_.emission()->targets() : nullptr);
         if (light_sampling_ && at.material.smooth && block.light.pdf[k] > 0)

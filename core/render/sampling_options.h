@@ -14,6 +14,6 @@ struct SamplingOptions {
     bool operator==(const SamplingOptions&) const = default;
 };
 
-inline constexpr float kMinTargetError = 1e-4f, kMaxTargetError = 1;
+inline constexpr float kMinTargetError = 0.001f, kMaxTargetError = 1;
 
 }  // namespace rayuela

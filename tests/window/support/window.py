@@ -78,7 +78,7 @@ class Window:
         file.write_text(json.dumps(scene))
         self.config = folder / "config" / "rayuela"
         self.config.mkdir(parents=True, exist_ok=True)
-        (self.config / "preferences.json").write_text(json.dumps({"first_start": False}))
+        (self.config / "preferences.json").write_text(json.dumps({"first_start": False, "sampling": {"adaptive": False}}))
         environment = dict(os.environ, DISPLAY=":" + screen.number, XDG_CONFIG_HOME=str(folder / "config"),
                            LIBGL_ALWAYS_SOFTWARE="1")
         self.screen, self.environment = screen, environment
