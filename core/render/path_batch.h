@@ -20,10 +20,10 @@ struct PathId {
 /// What a path carries from one bounce to the next.
 struct PathState {
     Color throughput{1};
-    std::uint32_t path = 0;     ///< Which of the batch.
-    std::uint32_t sampler = 0;  ///< Which of the batch; the path's own unless it has been split.
-    LightReceiver receiver;     ///< At the last scattering, not offset.
-    float light_ratio = 0;      ///< See LightTracer; 0 where no path from a lamp could be the same.
+    std::uint32_t path = 0;  ///< Which of the batch.
+    std::uint32_t part = 0;  ///< Which sampler and which sum of the batch: the path's own unless it has been split.
+    LightReceiver receiver;  ///< At the last scattering, not offset.
+    float light_ratio = 0;   ///< See LightTracer; 0 where no path from a lamp could be the same.
     float bsdf_pdf = 0;  ///< Density with which the last scattering chose the direction; 0 for camera and delta lobes.
 };
 
@@ -61,11 +61,12 @@ struct SurfaceBlock {
 struct PathBatch {
     // One a path.
     std::vector<PathId> ids;
-    std::vector<Color> radiance;              ///< The result.
+    std::vector<Color> radiance;              ///< The result; on the way followed by those of the parts of split paths.
     std::vector<std::uint32_t> first_object;  ///< Hit::object of the camera ray.
 
     std::vector<Vec2> filter_numbers, lens_numbers;  ///< Of the camera.
     std::vector<Sampler> samplers;                   ///< One a path, then those of the parts of split paths.
+    std::vector<std::uint32_t> part_paths;           ///< Which path each of these parts belongs to.
 
     // One a path still on its way, in the order of the paths.
     std::vector<PathState> states, next_states;
@@ -76,7 +77,7 @@ struct PathBatch {
     // One a shadow ray.
     std::vector<Ray> shadow_rays;
     std::vector<Color> shadow_light;  ///< What arrives when nothing is in the way.
-    std::vector<std::uint32_t> shadow_paths;
+    std::vector<std::uint32_t> shadow_parts;
     std::vector<std::uint8_t> blocked;
 
     // Paths at surfaces that many are shaded at once, and which of `states` they are.

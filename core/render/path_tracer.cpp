@@ -5,6 +5,8 @@
 #include "core/render/aimed_bsdf.h"
 #include "core/render/interaction.h"
 
+#include <numeric>
+
 namespace rayuela {
 
 namespace {
@@ -49,7 +51,7 @@ void record_arrivals(const PathBatch& batch, int bounce, PathRecord& record) {
 void record_light(const PathBatch& batch, int bounce, PathRecord& record) {
     for (std::size_t i = 0; i < batch.shadow_rays.size(); ++i)
         record.light_samples.push_back({bounce, batch.shadow_rays[i], batch.shadow_light[i], batch.blocked[i] != 0});
-    record.radiance.push_back(batch.radiance[0]);
+    record.radiance.push_back(std::accumulate(batch.radiance.begin(), batch.radiance.end(), Color(0)));
 }
 
 }  // namespace
@@ -78,6 +80,7 @@ bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, Pat
         add_unblocked_light(batch);
         if (record) record_light(batch, bounce, *record);
     }
+    add_parts(batch);
     return true;
 }
 
@@ -87,6 +90,7 @@ void PathTracer::camera_rays(PathBatch& batch) const {
     const PixelFilter filter = scene_.scene().film.filter;
     const Vec2 pixel_size(1 / static_cast<float>(width_), 1 / static_cast<float>(height_));
     batch.samplers.resize(n);
+    batch.part_paths.clear();
     batch.states.resize(n);
     batch.rays.resize(n);
     batch.radiance.assign(n, Color(0));
@@ -103,7 +107,7 @@ void PathTracer::camera_rays(PathBatch& batch) const {
         const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
         const Vec2 position = (centre + sample_filter(filter, batch.filter_numbers[i])) * pixel_size;
         const Vec2 lens = scene_.features().lens ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
-        batch.states[i] = {.path = static_cast<std::uint32_t>(i), .sampler = static_cast<std::uint32_t>(i)};
+        batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
         batch.rays[i] = camera_.ray(position, lens);
     }
     batch.counts.paths += n;
@@ -128,7 +132,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
     const bool last = bounce >= scene_.scene().render.max_bounces || !scene_.features().any_light();
     batch.shadow_rays.clear();
     batch.shadow_light.clear();
-    batch.shadow_paths.clear();
+    batch.shadow_parts.clear();
     batch.next_states.clear();
     batch.next_rays.clear();
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
@@ -139,7 +143,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         if (!hit.valid()) {
             if (!scene_.features().environment) continue;
             ++batch.counts.environment_lookups;
-            batch.radiance[state.path] += environment_light(state, ray.direction);
+            batch.radiance[state.part] += environment_light(state, ray.direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
@@ -149,8 +153,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         }
         batch.counts.textured_hits += material.textured;
         const Interaction& at = batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction);
-        // Not with the block: parts of a path add their light in the same order whatever paths are traced beside it.
-        if (material.emissive) batch.radiance[state.path] += emitted_light(state, ray, hit, at);
+        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);
         batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
@@ -173,7 +176,7 @@ void PathTracer::shade_surfaces(PathBatch& batch, int bounce, bool last) const {
         const AimedBsdf bsdf(at, aims(state, bounce) ? &scene_.emission()->targets() : nullptr);
         if (light_sampling_ && at.material.smooth && block.light.pdf[k] > 0)
             add_light(batch, state, at, bsdf, block.light.sample(k));
-        if (bsdf.aims() && state.bsdf_pdf == 0 && state.sampler == state.path) {
+        if (bsdf.aims() && state.bsdf_pdf == 0 && state.part == state.path) {
             split(batch, state, ray, at, bsdf, bounce);
         } else {
             scatter(batch, state, ray, at, bsdf, {block.lobe_numbers[k], block.direction_numbers[k]}, bounce);
@@ -188,7 +191,7 @@ void PathTracer::draw_numbers(PathBatch& batch, int bounce) const {
     SurfaceBlock& block = batch.surfaces;
     const std::size_t n = block.at.size();
     block.samplers.clear();
-    for (const std::uint32_t i : block.states) block.samplers.push_back(batch.samplers[batch.states[i].sampler]);
+    for (const std::uint32_t i : block.states) block.samplers.push_back(batch.samplers[batch.states[i].part]);
     draw_1d(block.samplers, dimension(bounce, kLobe), block.lobe_numbers);
     draw_2d(block.samplers, direction_dimension(bounce, light_sampling_), block.direction_numbers);
     if (!light_sampling_) return;
@@ -215,7 +218,9 @@ void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray,
     PathState part = state;
     part.throughput /= static_cast<float>(kParts);
     for (std::uint32_t i = 0; i < kParts; ++i) {
-        part.sampler = static_cast<std::uint32_t>(batch.samplers.size());
+        part.part = static_cast<std::uint32_t>(batch.samplers.size());
+        batch.part_paths.push_back(state.path);
+        batch.radiance.emplace_back(0);
         const Sampler& sampler = batch.samplers.emplace_back(settings.sampler, parts_seed_, pixel, sample * kParts + i);
         const ScatterNumbers numbers{sampler.get_1d(dimension(bounce, kLobe)),
                                      sampler.get_2d(direction_dimension(bounce, light_sampling_))};
@@ -258,7 +263,7 @@ void PathTracer::add_light(PathBatch& batch, const PathState& state, const Inter
     if (is_black(arriving)) return;
     batch.shadow_rays.push_back(shadow_ray(at.ray_origin(light.wi), light));
     batch.shadow_light.push_back(arriving);
-    batch.shadow_paths.push_back(state.path);
+    batch.shadow_parts.push_back(state.part);
 }
 
 /// Sends the path on its way, or ends it.
@@ -274,7 +279,7 @@ void PathTracer::scatter(PathBatch& batch, PathState state, const Ray& ray, cons
     const int roulette_start = rr_start_ + (sample->specular ? kSparedSpecularBounces : 0);
     if (options_.russian_roulette && bounce + 1 >= roulette_start && reach < kRouletteThroughput) {
         const float survival = reach / kRouletteThroughput;
-        if (batch.samplers[state.sampler].get_1d(dimension(bounce, kRoulette)) >= survival) return;
+        if (batch.samplers[state.part].get_1d(dimension(bounce, kRoulette)) >= survival) return;
         state.throughput /= survival;
     }
     if (light_tracer_) state.light_ratio = light_ratio(state, ray, at, wi, *sample, bounce);
@@ -314,8 +319,17 @@ void PathTracer::add_unblocked_light(PathBatch& batch) const {
     scene_.accelerator().occluded(batch.shadow_rays, batch.blocked);
     batch.counts.shadow_rays += n;
     for (std::size_t i = 0; i < n; ++i) {
-        if (!batch.blocked[i]) batch.radiance[batch.shadow_paths[i]] += batch.shadow_light[i];
+        if (!batch.blocked[i]) batch.radiance[batch.shadow_parts[i]] += batch.shadow_light[i];
     }
+}
+
+/// Each part has a sum of its own, and these are added at the end: whatever paths are traced beside it, a path's light is added
+/// up in the same order.
+void PathTracer::add_parts(PathBatch& batch) const {
+    const std::size_t n = batch.ids.size();
+    for (std::size_t i = 0; i < batch.part_paths.size(); ++i)
+        batch.radiance[batch.part_paths[i]] += batch.radiance[n + i];
+    batch.radiance.resize(n);
 }
 
 Color trace_one(const RenderScene& scene, const PathId& id, const PathTracerOptions& options, PathRecord* record) {

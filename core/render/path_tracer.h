@@ -56,6 +56,7 @@ private:
     void surface_interactions(PathBatch& batch) const;
     void shade(PathBatch& batch, int bounce) const;
     void add_unblocked_light(PathBatch& batch) const;
+    void add_parts(PathBatch& batch) const;
 
     Color environment_light(const PathState& state, const Vec3& direction) const;
     Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;

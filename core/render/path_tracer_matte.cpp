@@ -11,7 +11,7 @@ void PathTracer::add_matte(PathBatch& batch, std::size_t i, const Color& albedo,
     MatteBlock& block = batch.matte;
     const PathState& state = batch.states[i];
     const SurfacePoint& point = batch.points[i];
-    const Sampler& sampler = batch.samplers[state.sampler];
+    const Sampler& sampler = batch.samplers[state.part];
     const std::size_t to = block.size++;
     put(-batch.rays[i].direction, block.wo, to);
     put(point.p, block.light.p, to);
@@ -43,7 +43,7 @@ void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
                                      .direction = vec(block.shadow_direction, i),
                                      .t_max = block.light.distance[i] == kInfinity ? kInfinity : 1});
         batch.shadow_light.push_back(vec(block.shadow_light, i));
-        batch.shadow_paths.push_back(batch.states[batch.matte_states[i]].path);
+        batch.shadow_parts.push_back(batch.states[batch.matte_states[i]].part);
     }
     for (std::uint64_t rest = block.goes_on; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));

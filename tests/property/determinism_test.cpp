@@ -95,19 +95,26 @@ TEST(Determinism, OneSampleReplaysAlone) {
 }
 
 TEST(Determinism, CompanyInABatchDoesNotMatter) {
-    const Scene scene = mixed_scene(kWidth, kHeight);
-    const auto render_scene = make_render_scene(scene);
-    const PathTracer tracer(*render_scene, kWidth, kHeight);
-    const std::atomic<bool> cancelled{false};
-    PathBatch ordered, shuffled;
-    for (std::uint32_t i = 0; i < 1500; ++i) ordered.ids.push_back({i, i % 5});
-    std::vector<std::uint32_t> order(ordered.ids.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::shuffle(order.begin(), order.end(), std::mt19937(7));
-    for (const std::uint32_t i : order) shuffled.ids.push_back(ordered.ids[i]);
-    tracer.trace(ordered, cancelled);
-    tracer.trace(shuffled, cancelled);
-    for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(shuffled.radiance[i], ordered.radiance[order[i]]);
+    // A large mirror beside a lamp: paths split, and parts of one path meet diffuse things and others.
+    Scene caustics = mixed_scene(kWidth, kHeight);
+    add_object(caustics, Sphere{Vec3(0.5f, 2.2f, 0.5f), 0.05f}, add_material(caustics, Emitter{{Color(900), nullptr}}));
+    add_object(caustics, Sphere{Vec3(-1, 1, -1), 1}, add_material(caustics, Metal{}));
+    for (const Scene& scene : {mixed_scene(kWidth, kHeight), caustics}) {
+        const auto render_scene = make_render_scene(scene);
+        const PathTracer tracer(*render_scene, kWidth, kHeight);
+        const std::atomic<bool> cancelled{false};
+        PathBatch ordered, shuffled;
+        for (std::uint32_t i = 0; i < 6000; ++i) ordered.ids.push_back({i % (kWidth * kHeight), i % 5});
+        std::vector<std::uint32_t> order(ordered.ids.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::shuffle(order.begin(), order.end(), std::mt19937(7));
+        for (const std::uint32_t i : order) shuffled.ids.push_back(ordered.ids[i]);
+        tracer.trace(ordered, cancelled);
+        tracer.trace(shuffled, cancelled);
+        EXPECT_FALSE(ordered.part_paths.empty());
+        ASSERT_EQ(shuffled.radiance.size(), order.size());
+        for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(shuffled.radiance[i], ordered.radiance[order[i]]);
+    }
 }
 
 /// Powers of two scale every number exactly, so nothing in the renderer may know how large a metre is.
