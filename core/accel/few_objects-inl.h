@@ -123,7 +123,7 @@ private:
                                 rays.origin[z],
                                 rays.direction[x] / depth,
                                 rays.direction[y] / depth,
-                                rays.pad,
+                                filter_pad(rays.pad),
                                 begin - (rays.pad + rounding * hn::Abs(begin)),
                                 end + (rays.pad + rounding * hn::Abs(end))};
         const std::size_t n = leaf_.triangles;
@@ -206,22 +206,25 @@ private:
         const FloatTag d;
         const DoubleTag dd;
         const hn::Rebind<float, DoubleTag> df;
-        alignas(64) float direction[3][kLanes], length[kLanes];
+        // The length of a direction of large floats is beyond the range of float: it is used in double.
+        alignas(64) float direction[3][kLanes], begin[kLanes], end[kLanes];
         for (std::size_t axis = 0; axis < 3; ++axis) hn::Store(rays.direction[axis], d, direction[axis]);
+        hn::Store(rays.t_min, d, begin);
+        hn::Store(rays.t_end, d, end);
         for (std::size_t i = 0; i < kLanes; i += hn::MaxLanes(dd)) {
-            const auto load = [&](std::size_t axis)
-                                  HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, direction[axis] + i)); };
-            const Doubles x = load(0), y = load(1), z = load(2);
-            const Doubles size = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
-            const Doubles inverse = hn::Div(hn::Set(dd, 1), size);
-            hn::Store(hn::DemoteTo(df, size), df, length + i);
-            hn::Store(hn::DemoteTo(df, hn::Mul(x, inverse)), df, direction[0] + i);
-            hn::Store(hn::DemoteTo(df, hn::Mul(y, inverse)), df, direction[1] + i);
-            hn::Store(hn::DemoteTo(df, hn::Mul(z, inverse)), df, direction[2] + i);
+            const auto load = [&](const float* from) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, from + i)); };
+            const auto store = [&](Doubles value, float* to)
+                                   HWY_ATTR { hn::Store(hn::DemoteTo(df, value), df, to + i); };
+            const Doubles x = load(direction[0]), y = load(direction[1]), z = load(direction[2]);
+            const Doubles length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+            const Doubles inverse = hn::Div(hn::Set(dd, 1), length);
+            store(hn::Mul(length, load(begin)), begin);
+            store(hn::Mul(length, load(end)), end);
+            store(hn::Mul(x, inverse), direction[0]);
+            store(hn::Mul(y, inverse), direction[1]);
+            store(hn::Mul(z, inverse), direction[2]);
         }
         const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
-        const Floats begin = load(length) * rays.t_min * hn::Set(d, 1 - 4 * kUnitRoundoff),
-                     end = load(length) * rays.t_end * hn::Set(d, 1 + 4 * kUnitRoundoff);
         return {rays.origin[0],
                 rays.origin[1],
                 rays.origin[2],
@@ -229,8 +232,8 @@ private:
                 load(direction[1]),
                 load(direction[2]),
                 rays.pad,
-                begin,
-                end};
+                load(begin) * hn::Set(d, 1 - 4 * kUnitRoundoff),
+                load(end) * hn::Set(d, 1 + 4 * kUnitRoundoff)};
     }
 
     HWY_INLINE void test_others(const WorldRays& rays) {

@@ -30,12 +30,12 @@ public:
             direction_[axis][slot] = n[axis];
         }
         pad_[slot] = block_.pad[i];
-        length_[slot] = static_cast<float>(length);
-        begin_[slot] = length_[slot] * ray.t_min * (1 - 4 * kUnitRoundoff);
+        length_[slot] = length;
+        begin_[slot] = static_cast<float>(length * ray.t_min) * (1 - 4 * kUnitRoundoff);
         set_end(slot, t_max);
     }
     HWY_INLINE void set_end(std::size_t slot, float t_max) {
-        end_[slot] = length_[slot] * t_max * (1 + 4 * kUnitRoundoff);
+        end_[slot] = static_cast<float>(length_[slot] * t_max) * (1 + 4 * kUnitRoundoff);
     }
 
     /// Spheres i to i + kLanes of the n of a leaf; names[k] is the object that sphere k is. True when `decide` must be
@@ -79,7 +79,7 @@ private:
     std::uint32_t ray_of_slot_[kSlots];  ///< In the batch.
     alignas(64) float origin_[3][kSlots] = {}, direction_[3][kSlots] = {};
     alignas(64) float pad_[kSlots] = {}, begin_[kSlots] = {}, end_[kSlots] = {};
-    float length_[kSlots] = {};
+    double length_[kSlots] = {};  ///< Of a direction of large floats: beyond the range of float.
     SphereCandidates candidates_;
 };
 

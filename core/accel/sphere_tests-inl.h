@@ -36,9 +36,10 @@ HWY_INLINE FloatMask may_hit(const SphereFilterRays& ray, const FilterSpheres& s
     const Floats px = hn::NegMulAdd(along, ray.nx, x), py = hn::NegMulAdd(along, ray.ny, y),
                  pz = hn::NegMulAdd(along, ray.nz, z);
     const Floats squared = hn::MulAdd(pz, pz, hn::MulAdd(py, py, px * px));
-    const auto near = hn::Le(squared, reach * reach * hn::Set(d, 1 + 16 * kUnitRoundoff));
-    const auto within = hn::And(hn::Ge(along + reach, ray.begin), hn::Le(along - reach, ray.end));
-    return hn::And(near, within);
+    // What overflows may be a hit: comparisons with a NaN are false.
+    const auto far = hn::Gt(squared, reach * reach * hn::Set(d, 1 + 16 * kUnitRoundoff));
+    const auto apart = hn::Or(hn::Lt(along + reach, ray.begin), hn::Gt(along - reach, ray.end));
+    return hn::Not(hn::Or(far, apart));
 }
 
 /// Pairs of a ray of a batch and a sphere object that the filter has left, to be decided many at once by intersect_sphere, the

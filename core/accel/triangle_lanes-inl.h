@@ -47,8 +47,8 @@ HWY_INLINE FloatMask may_hit(const TriangleFilter& ray, const float* runs, std::
     const FloatTag d;
     const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
     const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n); };
-    return may_hit(FilterRays{set(ray.ox), set(ray.oy), set(ray.oz), set(ray.shear_x), set(ray.shear_y), set(ray.pad),
-                              set(ray.z_begin), set(ray.z_end)},
+    return may_hit(FilterRays{set(ray.ox), set(ray.oy), set(ray.oz), set(ray.shear_x), set(ray.shear_y),
+                              filter_pad(set(ray.pad)), set(ray.z_begin), set(ray.z_end)},
                    FilterTriangles{load(ray.x), load(ray.y), load(ray.z), load(3 + ray.x), load(3 + ray.y),
                                    load(3 + ray.z), load(6 + ray.x), load(6 + ray.y), load(6 + ray.z), load(9)});
 }

@@ -51,7 +51,7 @@ public:
                               of_block(block_.origin[axes_[2]]),
                               load(shear_x_),
                               load(shear_y_),
-                              of_block(block_.pad),
+                              filter_pad(of_block(block_.pad)),
                               load(z_begin_),
                               load(z_end_)};
         const float* run[kTriangleRuns];

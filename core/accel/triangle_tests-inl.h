@@ -13,9 +13,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
+/// RayBlock::pad for the edge functions: infinite, so that all triangles pass, where these could overflow.
+HWY_INLINE Floats filter_pad(Floats pad) {
+    const FloatTag d;
+    constexpr float kLargestReach = 0x1p60f;
+    return hn::IfThenElse(hn::Lt(pad, hn::Set(d, 10 * kUnitRoundoff * kLargestReach)), pad, hn::Set(d, kInfinity));
+}
+
 /// Rays, or one ray in all lanes, in the turn of the axes that RayBlock describes.
 struct FilterRays {
-    Floats ox, oy, oz, shear_x, shear_y, pad;
+    Floats ox, oy, oz, shear_x, shear_y;
+    Floats pad;             ///< filter_pad.
     Floats z_begin, z_end;  ///< The depths, from the origin along z, between which a hit counts.
 };
 

@@ -26,8 +26,12 @@ void expect_right_hits(const std::vector<GeometryInstance>& scene, const std::ve
             const Answers actual = trace(*kd, batch);
             outcome.cases += batch.size();
             for (std::size_t i = 0; i < batch.size(); ++i) {
-                outcome.expect(identical(actual.hits[i], expected.hits[i]) && actual.blocked[i] == expected.blocked[i],
-                               [&] { return fmt::format("leaf size {}: {}", leaf_size, describe(batch[i])); });
+                const Hit &e = expected.hits[i], &a = actual.hits[i];
+                outcome.expect(identical(a, e) && actual.blocked[i] == expected.blocked[i], [&] {
+                    return fmt::format(
+                        "leaf size {}: list t {:.9g} object {} primitive {}, kd t {:.9g} object {} primitive {}: {}",
+                        leaf_size, e.t, e.object, e.primitive, a.t, a.object, a.primitive, describe(batch[i]));
+                });
             }
         }
     }

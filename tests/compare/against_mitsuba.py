@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Run time against error, Rayuela beside Mitsuba 3 in the same run, one thread each and in turns.
+
+    python3 -m venv venv && venv/bin/pip install mitsuba numpy        # llvm_ad_rgb also wants libLLVM
+    venv/bin/python tests/compare/against_mitsuba.py RAYUELA SCENE REFERENCE_A REFERENCE_B [--spp N] [--rounds N] [--variant V]
+
+The references are two .pfm images of the scene made by `rayuela reference` or anybody else. CPU seconds are those of loading
+and rendering; Mitsuba's are given for its second render too, when its kernels are compiled.
+"""
+
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+
+def read_pfm(path):
+    with open(path, "rb") as file:
+        kind, size, scale = (file.readline().split() for _ in range(3))
+        if kind[0] != b"PF":
+            sys.exit(f"{path}: not a PFM image of three channels")
+        width, height = int(size[0]), int(size[1])
+        pixels = np.frombuffer(file.read(), dtype="<f4" if float(scale[0]) < 0 else ">f4")
+    return pixels.reshape(height, width, 3)[::-1].astype(np.float64)
+
+
+def rel_mse(image, a, b):
+    """Against two independent halves of a reference, whose own noise so drops out."""
+    mean = (a + b) / 2
+    return float(np.mean((image - a) * (image - b) / (mean ** 2 + 0.01)))
+
+
+def render_mitsuba(arguments):
+    """In a process of its own: prints the seconds of a first and a second render, and writes the second as .npy."""
+    import drjit as dr
+    import mitsuba as mi
+    mi.set_variant(arguments.variant)
+    if "llvm" in arguments.variant:
+        dr.set_thread_count(1)
+    import mitsuba_scene
+    with tempfile.TemporaryDirectory() as scratch:
+        try:
+            description = mitsuba_scene.convert(arguments.scene, pathlib.Path(scratch))
+        except mitsuba_scene.Unsupported as problem:
+            sys.exit(f"{arguments.scene}: {problem}")
+        seconds = []
+        start = time.process_time()
+        scene = mi.load_dict(description)
+        load = time.process_time() - start
+        for seed in (2 * arguments.seed, 2 * arguments.seed + 1):
+            start = time.process_time()
+            image = np.array(mi.render(scene, spp=arguments.spp, seed=seed))
+            seconds.append(load + time.process_time() - start)
+    np.save(arguments.output, image[:, :, :3])
+    print(json.dumps(seconds))
+
+
+def run_mitsuba(arguments, seed, folder):
+    output = folder / "mitsuba.npy"
+    command = [sys.executable, __file__, arguments.rayuela, arguments.scene, *arguments.references, "--spp",
+               str(arguments.spp), "--variant", arguments.variant, "--seed", str(seed), "--output", str(output)]
+    done = subprocess.run(["taskset", "-c", "0", *command], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stderr.strip())
+    return json.loads(done.stdout), np.load(output).astype(np.float64)
+
+
+def run_rayuela(arguments, seed, folder):
+    image, stats = folder / "rayuela.pfm", folder / "stats.json"
+    subprocess.run(["taskset", "-c", "0", arguments.rayuela, "render", arguments.scene, "-o", image, "--spp",
+                    str(arguments.spp), "--threads", "1", "--seed", str(seed), "--stats", stats], check=True,
+                   capture_output=True)
+    return json.loads(stats.read_text())["cpu_seconds"], read_pfm(image)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("rayuela")
+    parser.add_argument("scene")
+    parser.add_argument("references", nargs=2)
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--seed", type=int, default=0, help=argparse.SUPPRESS)
+    parser.add_argument("--output", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.output:
+        render_mitsuba(arguments)
+        return
+    halves = [read_pfm(path) for path in arguments.references]
+    mean = (halves[0].mean() + halves[1].mean()) / 2
+    rows = {"rayuela": [], f"mitsuba {arguments.variant}": [], "  its second render": []}
+    names = list(rows)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        for seed in range(arguments.rounds):
+            seconds, image = run_rayuela(arguments, seed, folder)
+            rows[names[0]].append((seconds, rel_mse(image, *halves), image.mean() / mean))
+            times, image = run_mitsuba(arguments, seed, folder)
+            error = rel_mse(image, *halves), image.mean() / mean
+            rows[names[1]].append((times[0], *error))
+            rows[names[2]].append((times[1], *error))
+    print(f"{'':24}{'CPU s':>8}{'relMSE':>11}{'mean ratio':>12}{'s to 0.001':>12}{'times':>7}")
+    best = None
+    for name, runs in rows.items():
+        seconds = statistics.median(run[0] for run in runs)
+        error, mean = (statistics.fmean(run[k] for run in runs) for k in (1, 2))
+        to_error = seconds * error / 1e-3
+        best = best or to_error
+        print(f"{name:24}{seconds:8.2f}{error:11.6f}{mean:12.5f}{to_error:12.2f}{to_error / best:7.2f}")
+
+
+main()
