@@ -180,9 +180,9 @@ struct Flat {
 
     /// With positive `sign` counter-clockwise seen from the front.
     Vec3d normal(double sign) const { return sign * glm::cross(e1, e2); }
-    /// Moved towards the centroid by as much as the margin asks for in a triangle that is not thin.
+    /// Moved towards the centroid by as much as the margin asks for in a triangle whose height is an eighth of its extent.
     Vec3d point(double b1, double b2) const {
-        const double inward = glm::min(1.0, 6 * margin_at(a + b1 * e1 + b2 * e2) / extent);
+        const double inward = glm::min(1.0, 24 * margin_at(a + b1 * e1 + b2 * e2) / extent);
         return a + glm::mix(b1, 1.0 / 3, inward) * e1 + glm::mix(b2, 1.0 / 3, inward) * e2;
     }
 };

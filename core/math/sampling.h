@@ -32,10 +32,13 @@ inline Vec2 sample_concentric_disk(const Vec2& u) {
     return horizontal ? w : Vec2(w.y, w.x);
 }
 
-/// Density cos / pi. Malley's method; z > 0 but where u lies on the very edge of the square.
+/// The z^2 of numbers u at the middle of the outermost of the 2^24 steps that u can take.
+inline constexpr float kLowestHemisphereZ2 = 0x1p-23f;
+
+/// Density cos / pi. Malley's method. z > 0: numbers on the very edge of the square count as the middle of their step.
 inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
     const Vec2 d = sample_concentric_disk(u);
-    return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y))};
+    return {d.x, d.y, std::sqrt(std::max(kLowestHemisphereZ2, 1 - d.x * d.x - d.y * d.y))};
 }
 
 /// (cos, sin) of the angle that is `turns`, in [0, 1], of the full one.

@@ -124,7 +124,7 @@ HWY_INLINE Vec2Lanes sample_concentric_disk(const Vec2Lanes& u) {
 HWY_INLINE Vec3Lanes sample_cosine_hemisphere(const Vec2Lanes& u) {
     const Vec2Lanes d = sample_concentric_disk(u);
     const Floats z2 = all_lanes(1.0f) - d.x * d.x - d.y * d.y;
-    return {d.x, d.y, hn::Sqrt(hn::Max(hn::Zero(FloatTag()), z2))};
+    return {d.x, d.y, hn::Sqrt(hn::Max(all_lanes(kLowestHemisphereZ2), z2))};
 }
 
 HWY_INLINE Vec2Lanes cos_sin_turns(Floats turns) {
