@@ -23,6 +23,7 @@ RELATIVE = {
     "core/accel/ray_block-inl.h": ["longest", "length >", "direction[axis]", "kBoundsTolerance"],
     "core/accel/triangle_tests-inl.h": ["difference"],
     "core/materials/microfacet.h": ["kSmoothAlpha"],
+    "core/math/sampling.h": ["kLowestHemisphereZ2"],
     "core/render/camera_rays.cpp": ["kParallel"],
     "core/render/image_error.cpp": ["kTrimmedShare"],
     "core/render/reference_trace.cpp": ["kEdge"],
