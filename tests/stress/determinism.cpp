@@ -1,9 +1,9 @@
+#include "core/math/isa.h"
 #include "core/render/render_session.h"
 #include "tests/stress/paths.h"
 #include "tests/support/random_edit.h"
 
 #include <fmt/format.h>
-#include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
 #include <chrono>
@@ -92,14 +92,13 @@ Outcome instruction_sets(double scale) {
     const auto expected = means(render(scene, samples, {}, threads)->film());
     Outcome outcome;
     outcome.note = fmt::format("film of {} samples: {:016x}", samples, fnv1a(expected));
-    const std::int64_t supported = hwy::SupportedTargets();
-    for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
-        hwy::GetChosenTarget().Update(rest & -rest);
+    for (const std::string_view set : rayuela::instruction_sets()) {
+        use_instruction_set(set);
         outcome.expect(means(render(scene, samples, {}, threads)->film()) == expected,
-                       [&] { return hwy::TargetName(rest & -rest); });
+                       [&] { return std::string(set); });
         ++outcome.cases;
     }
-    hwy::GetChosenTarget().Update(supported);
+    use_instruction_set(rayuela::instruction_sets().front());
     return outcome;
 }
 

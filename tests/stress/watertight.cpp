@@ -1,10 +1,10 @@
+#include "core/math/isa.h"
 #include "core/shapes/intersect_triangle.h"
 #include "tests/stress/stress.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/oracle.h"
 
 #include <fmt/format.h>
-#include <hwy/targets.h>
 
 namespace rayuela::stress {
 namespace {
@@ -97,13 +97,12 @@ Outcome closed_meshes_of_picometres(double scale) {
 /// From SSE2 to what this machine has at best. Compilers and levels of optimisation: tests/stress/compilers.sh.
 Outcome instruction_sets(double scale) {
     const std::vector<PlacedMesh> placed = place({1e-3f, 37.7f});
-    const std::int64_t supported = hwy::SupportedTargets();
     Outcome total;
-    for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
-        hwy::GetChosenTarget().Update(rest & -rest);
+    for (const std::string_view set : rayuela::instruction_sets()) {
+        use_instruction_set(set);
         total.add(trace_from_inside(placed, scaled(3e6, scale), 8000));
     }
-    hwy::GetChosenTarget().Update(supported);
+    use_instruction_set(rayuela::instruction_sets().front());
     return total;
 }
 
