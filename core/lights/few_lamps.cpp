@@ -29,16 +29,15 @@ HWY_INLINE void store(const Vec3Lanes& v, LightBlock::Rows& rows, std::size_t i)
 }
 
 /// One lamp in all lanes.
-HWY_INLINE ClusterLanes cluster_of(const FewLamps& lamps, std::size_t k) {
-    const auto all = [&](const FewLamps::Rows& rows)
-                         HWY_ATTR { return all_lanes(Vec3(rows[0][k], rows[1][k], rows[2][k])); };
-    return {all(lamps.center),
-            all(lamps.axis),
-            all_lanes(lamps.radius2[k]),
-            all_lanes(lamps.cos_spread[k]),
-            all_lanes(lamps.sin_spread[k]),
-            all_lanes(lamps.power[k]),
-            hn::BitCast(FloatTag(), hn::Set(WordTag(), lamps.two_sided_bit[k]))};
+HWY_INLINE ClusterLanes cluster_of(const LightClusters& clusters, std::size_t k) {
+    const auto all = [&](const auto& rows) HWY_ATTR { return all_lanes(Vec3(rows[0][k], rows[1][k], rows[2][k])); };
+    return {all(clusters.center),
+            all(clusters.axis),
+            all_lanes(clusters.radius2[k]),
+            all_lanes(clusters.cos_spread[k]),
+            all_lanes(clusters.sin_spread[k]),
+            all_lanes(clusters.power[k]),
+            hn::BitCast(FloatTag(), hn::Set(WordTag(), clusters.two_sided[k]))};
 }
 
 /// Which lamp each lane samples.
@@ -57,7 +56,7 @@ HWY_INLINE Choice choose(const FewLamps& lamps, const Vec3Lanes& p, const Vec3La
     Floats sent[FewLamps::kMost];
     for (Floats& s : sent) s = zero;
     const FloatMask facing = hn::Not(is_black(n));
-    for (std::size_t k = 0; k < lamps.count; ++k) sent[k] = importance(p, &n, facing, cluster_of(lamps, k));
+    for (std::size_t k = 0; k < lamps.count; ++k) sent[k] = importance(p, &n, facing, cluster_of(lamps.clusters, k));
     const Floats total = ((sent[0] + sent[1]) + (sent[2] + sent[3])) + ((sent[4] + sent[5]) + (sent[6] + sent[7]));
     const FloatMask usable = hn::And(hn::Gt(total, zero), hn::Lt(total, all_lanes(kInfinity)));
     Floats rest = u * total, chosen = all_lanes(1.0f);
@@ -226,22 +225,8 @@ std::optional<FewLamps> FewLamps::of(std::span<const AreaLight> lights, const Li
         if (light.texture) return std::nullopt;
         result.add(light);
     }
-    if (tree.size() > 1) result.set_clusters(*tree.only_clusters());
+    if (tree.size() > 1) result.clusters = *tree.only_clusters();
     return result;
-}
-
-void FewLamps::set_clusters(const LightClusters& clusters) {
-    for (std::size_t k = 0; k < count; ++k) {
-        for (std::size_t axis_of_space = 0; axis_of_space < 3; ++axis_of_space) {
-            center[axis_of_space][k] = clusters.center[axis_of_space][k];
-            axis[axis_of_space][k] = clusters.axis[axis_of_space][k];
-        }
-        radius2[k] = clusters.radius2[k];
-        cos_spread[k] = clusters.cos_spread[k];
-        sin_spread[k] = clusters.sin_spread[k];
-        power[k] = clusters.power[k];
-        two_sided_bit[k] = clusters.two_sided[k];
-    }
 }
 
 void FewLamps::add(const AreaLight& light) {

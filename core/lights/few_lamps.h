@@ -27,10 +27,7 @@ public:
     std::size_t count = 0;
     bool any_sphere = false, any_flat = false;
 
-    /// As in LightClusters. Unused where there is but one lamp.
-    Rows center{}, axis{};
-    Row radius2{}, cos_spread{}, sin_spread{}, power{};
-    std::array<std::uint32_t, kMost> two_sided_bit{};
+    LightClusters clusters;  ///< One lamp a lane. Unused where there is but one.
 
     /// As in AreaLight.
     Rows origin{}, edge_u{}, edge_v{}, normal{}, radiance{}, point_error{};
@@ -39,7 +36,6 @@ public:
 
 private:
     void add(const AreaLight& light);
-    void set_clusters(const LightClusters& clusters);
 };
 
 }  // namespace rayuela

@@ -141,8 +141,8 @@ void draw_adaptive(SamplingSettings& sampling) {
     ImGui::Checkbox("##adaptive", &sampling.adaptive);
     tooltip(
         "Samples go where the noise is, and rendering stops where the target error is reached; no pixel gets fewer "
-        "than "
-        "32. Each half of the samples is stopped by what the other half shows, so the image does not become darker or "
+        "than 32. Each half of the samples is stopped by what the other half shows, so the image does not become "
+        "darker or "
         "brighter by it. Off: all pixels get the same. What has been rendered stays.");
     ImGui::BeginDisabled(!sampling.adaptive);
     field_label("Target error", "Relative error at which the image is finished.");
@@ -161,8 +161,7 @@ void draw_clamp(SamplingSettings& sampling) {
     ImGui::Checkbox("##clamps", &sampling.clamps);
     tooltip(
         "Darkens samples brighter than this, which hides rare bright dots. It also takes light away that belongs "
-        "there: "
-        "Statistics says how much. Off by default; switching it restarts the image.");
+        "there: Statistics says how much. Off by default; switching it restarts the image.");
     if (!sampling.clamps) return;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-FLT_MIN);
