@@ -111,10 +111,11 @@ private:
 
     const float* runs() const { return scene_.leaves->triangle_runs.data(); }
 
-    HWY_INLINE void add_triangles(const WorldRays& rays, std::uint32_t z) {
+    HWY_INLINE void add_triangles(const WorldRays& rays, std::uint32_t dominant_axis) {
         const FloatTag d;
         const WordTag dw;
-        const std::uint32_t x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
+        const Turn turn(dominant_axis);
+        const auto [x, y, z] = turn;
         const Floats depth = rays.direction[z];
         const Floats from = depth * rays.t_min, to = depth * rays.t_end, rounding = hn::Set(d, 4 * kUnitRoundoff);
         const Floats begin = hn::Min(from, to), end = hn::Max(from, to);
@@ -127,28 +128,23 @@ private:
                                 begin - (rays.pad + rounding * hn::Abs(begin)),
                                 end + (rays.pad + rounding * hn::Abs(end))};
         const std::size_t n = leaf_.triangles;
-        const float* run[kTriangleRuns];
-        const std::uint32_t turn[3] = {x, y, z};
-        for (std::size_t i = 0; i < 9; ++i) run[i] = runs() + (i / 3 * 3 + turn[i % 3]) * n;
-        run[9] = runs() + 9 * n;
+        const TurnedRuns turned(runs(), n, turn);
         for (std::size_t i = 0; i < n; ++i) {
-            const auto set = [&](std::size_t k) HWY_ATTR { return hn::Set(d, run[k][i]); };
-            const FilterTriangles triangle{set(0), set(1), set(2), set(3), set(4),
-                                           set(5), set(6), set(7), set(8), set(9)};
-            const FloatMask hit = hn::And(may_hit(filter, triangle), rays.usable);
+            const FloatMask hit = hn::And(may_hit(filter, turned.triangle(i)), rays.usable);
             hn::StoreU(hn::Compress(rays.id, hn::RebindMask(dw, hit)), dw, ray_ + count_);
             hn::StoreU(hn::Set(dw, static_cast<std::uint32_t>(i)), dw, triangle_ + count_);
             count_ += hn::CountTrue(d, hit);
-            if (count_ > kRoom - kLanes) decide_triangles(z);
+            if (count_ > kRoom - kLanes) decide_triangles(dominant_axis);
         }
     }
 
-    HWY_INLINE void decide_triangles(std::uint32_t z) {
+    HWY_INLINE void decide_triangles(std::uint32_t dominant_axis) {
         const DoubleTag dd;
         const hn::Rebind<float, DoubleTag> df;
         const hn::Rebind<std::int32_t, DoubleTag> dw;
         constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
-        const std::uint32_t x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
+        const Turn turn(dominant_axis);
+        const std::uint32_t x = turn.x, y = turn.y, z = turn.z;
         const std::size_t n = leaf_.triangles;
         for (std::size_t i = 0; i < count_; i += kDoubles) {
             // Past the last candidate lie earlier ones or zeros, whose results are dropped.

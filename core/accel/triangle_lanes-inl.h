@@ -22,7 +22,7 @@ struct TriangleFilter {
     std::uint32_t previous;  ///< The triangle decided last.
 
     HWY_INLINE static TriangleFilter of(const RayBlock& block, std::size_t i, const Ray& ray, float t_max) {
-        const std::uint32_t z = block.dominant_axis[i], x = z == 2 ? 0 : z + 1, y = x == 2 ? 0 : x + 1;
+        const auto [x, y, z] = Turn(block.dominant_axis[i]);
         TriangleFilter filter{.x = x,
                               .y = y,
                               .z = z,

@@ -21,10 +21,7 @@ public:
     /// Rays first to first + kLanes of the block, of which those in `lanes` count, up to the closest hits so far.
     HWY_INLINE void start(std::size_t first, LaneBits lanes, std::span<const Hit> hits) {
         first_ = first;
-        const std::uint32_t z = block_.dominant_axis[first + first_lane(lanes)];
-        axes_[0] = z == 2 ? 0 : z + 1;
-        axes_[1] = axes_[0] == 2 ? 0 : axes_[0] + 1;
-        axes_[2] = z;
+        turn_ = Turn(block_.dominant_axis[first + first_lane(lanes)]);
         for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
             const std::size_t lane = first_lane(rest);
             const std::uint32_t id = block_.id[first + lane];
@@ -46,23 +43,19 @@ public:
         const FloatTag d;
         const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
         const auto of_block = [&](const float* values) HWY_ATTR { return hn::LoadU(d, values + first_); };
-        const FilterRays rays{of_block(block_.origin[axes_[0]]),
-                              of_block(block_.origin[axes_[1]]),
-                              of_block(block_.origin[axes_[2]]),
+        const FilterRays rays{of_block(block_.origin[turn_.x]),
+                              of_block(block_.origin[turn_.y]),
+                              of_block(block_.origin[turn_.z]),
                               load(shear_x_),
                               load(shear_y_),
                               filter_pad(of_block(block_.pad)),
                               load(z_begin_),
                               load(z_end_)};
-        const float* run[kTriangleRuns];
-        for (std::size_t i = 0; i < 9; ++i) run[i] = runs + (i / 3 * 3 + axes_[i % 3]) * n;
-        run[9] = runs + 9 * n;
+        const TurnedRuns turned(runs, n, turn_);
         for (std::size_t i = 0; i < n; ++i) {
-            const auto set = [&](std::size_t k) HWY_ATTR { return hn::Set(d, run[k][i]); };
-            const FloatMask may = may_hit(
-                rays, FilterTriangles{set(0), set(1), set(2), set(3), set(4), set(5), set(6), set(7), set(8), set(9)});
+            const FloatMask may = may_hit(rays, turned.triangle(i));
             const LaneBits candidates = bits_of(d, hn::And(may, here));
-            if (candidates != 0) decide(run, i, candidates, accept);
+            if (candidates != 0) decide(turned.run, i, candidates, accept);
         }
     }
 
@@ -97,7 +90,7 @@ private:
     const RayBlock& block_;
     std::span<const Ray> rays_;
     std::size_t first_ = 0;
-    std::uint32_t axes_[3] = {};
+    Turn turn_{2};
     alignas(64) float shear_x_[kLanes] = {}, shear_y_[kLanes] = {}, z_begin_[kLanes] = {}, z_end_[kLanes] = {};
     float depth_[kLanes] = {};
 };

@@ -6,6 +6,7 @@
 #define RAYUELA_CORE_ACCEL_TRIANGLE_TESTS_INL_H_
 #endif
 
+#include "core/accel/triangle_runs.h"
 #include "core/shapes/intersect_triangle.h"
 
 #include "core/accel/kd_lanes-inl.h"
@@ -31,6 +32,30 @@ struct FilterRays {
 struct FilterTriangles {
     Floats ax, ay, az, bx, by, bz, cx, cy, cz;
     Floats extent;  ///< The largest along an axis.
+};
+
+/// The turn of the axes, as TriangleRay has it, that makes the dominant axis z.
+struct Turn {
+    std::uint32_t x, y, z;
+
+    explicit Turn(std::uint32_t dominant_axis)
+        : x(dominant_axis == 2 ? 0 : dominant_axis + 1), y(x == 2 ? 0 : x + 1), z(dominant_axis) {}
+};
+
+/// The n triangles of a leaf in a turn of the axes.
+struct TurnedRuns {
+    const float* run[kTriangleRuns];
+
+    HWY_INLINE TurnedRuns(const float* runs, std::size_t n, const Turn& turn) {
+        const std::uint32_t axes[3] = {turn.x, turn.y, turn.z};
+        for (std::size_t i = 0; i < 9; ++i) run[i] = runs + (i / 3 * 3 + axes[i % 3]) * n;
+        run[9] = runs + 9 * n;
+    }
+    /// Triangle i in all lanes.
+    HWY_INLINE FilterTriangles triangle(std::size_t i) const {
+        const auto set = [&](std::size_t k) HWY_ATTR { return hn::Set(FloatTag(), run[k][i]); };
+        return {set(0), set(1), set(2), set(3), set(4), set(5), set(6), set(7), set(8), set(9)};
+    }
 };
 
 /// False only for triangles that the exact test rejects. With u the unit roundoff and R = |origin| + |bounds|, the sheared
