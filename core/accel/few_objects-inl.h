@@ -22,7 +22,7 @@ struct WorldRays {
     /// The n (or kLanes, if that is less) rays from `ids` on. `reach` is the largest coordinate of the scene's bounds.
     HWY_INLINE WorldRays(std::span<const Ray> rays, std::span<const Hit> hits, const std::uint32_t* ids, std::size_t n,
                          float reach) {
-        static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 5 * sizeof(float));
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float));
         const FloatTag d;
         const hn::RebindToSigned<FloatTag> di;
         id = hn::LoadU(WordTag(), ids);
@@ -36,7 +36,8 @@ struct WorldRays {
         }
         t_min = field(3);
         const Floats t_max = field(7);
-        t_end = hn::Min(t_max, hn::GatherIndex(d, &hits.data()->t, hn::Add(hn::ShiftLeft<2>(index), index)));
+        const auto sixfold = hn::Add(hn::ShiftLeft<2>(index), hn::ShiftLeft<1>(index));
+        t_end = hn::Min(t_max, hn::GatherIndex(d, &hits.data()->t, sixfold));
         const Floats zero = hn::Zero(d);
         const auto sum_of_nothing = [&](const Floats(&v)[3])
                                         HWY_ATTR { return v[0] * zero + v[1] * zero + v[2] * zero; };
@@ -166,14 +167,14 @@ private:
             const auto t = hn::DemoteTo(df, hits.t);
             const auto in_range =
                 hn::And(hn::And(hn::Ge(t, field(3)), hn::Le(t, field(7))), hn::Lt(hn::Abs(t), hn::Set(df, kInfinity)));
-            alignas(64) float ts[kDoubles], us[kDoubles], vs[kDoubles];
-            hn::Store(t, df, ts);
-            hn::Store(hn::DemoteTo(df, hits.u), df, us);
-            hn::Store(hn::DemoteTo(df, hits.v), df, vs);
+            alignas(64) double ts[kDoubles], us[kDoubles], vs[kDoubles];
+            hn::Store(hits.t, dd, ts);
+            hn::Store(hits.u, dd, us);
+            hn::Store(hits.v, dd, vs);
             const auto hit = hn::And(hits.hit, hn::FirstN(dd, count_ - i));
             for (LaneBits bits = bits_of(dd, hit) & bits_of(df, in_range); bits != 0; bits &= bits - 1) {
                 const std::size_t k = first_lane(bits);
-                keep_triangle(scene_.leaves->triangles[triangle_[i + k]], {.t = ts[k], .u = us[k], .v = vs[k]},
+                keep_triangle(scene_.leaves->triangles[triangle_[i + k]], triangle_hit(ts[k], us[k], vs[k]),
                               hits_[ray_[i + k]]);
             }
         }

@@ -83,23 +83,22 @@ public:
     HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
         const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first();
         const std::uint32_t* const names = mesh_.tree.references.data() + leaf.first();
-        LaneBits hit = 0;
+        LaneBits closer = 0;
         packet_.test(runs, leaf.count(), mask_of(lanes),
-                     [&](std::size_t lane, std::size_t i, float t, float u, float v) HWY_ATTR {
-                         keep_closer({.t = t, .u = u, .v = v}, object_, names[i], hits_[block_.id[first_ + lane]]);
-                         hit |= LaneBits{1} << lane;
+                     [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
+                         keep_closer(hit, object_, names[i], hits_[block_.id[first_ + lane]]);
+                         closer |= LaneBits{1} << lane;
                      });
-        for (; hit != 0; hit &= hit - 1) {
-            go_on<kQuery>(first_lane(hit), first_ + first_lane(hit), block_, rays_, hits_, packet,
+        for (; closer != 0; closer &= closer - 1) {
+            go_on<kQuery>(first_lane(closer), first_ + first_lane(closer), block_, rays_, hits_, packet,
                           [&](std::size_t lane, float end) HWY_ATTR { packet_.set_end(lane, end); });
         }
     }
 
 private:
     HWY_INLINE void decide() {
-        triangles_.decide([&](std::uint32_t i, std::uint32_t triangle, float t, float u, float v) HWY_ATTR {
-            keep_closer({.t = t, .u = u, .v = v}, object_, triangle, hits_[block_.id[i]]);
-        });
+        triangles_.decide([&](std::uint32_t i, std::uint32_t triangle, const ShapeHit& hit)
+                              HWY_ATTR { keep_closer(hit, object_, triangle, hits_[block_.id[i]]); });
     }
 
     const MeshTree& mesh_;
@@ -181,11 +180,10 @@ public:
     HWY_INLINE void visit_packet(const KdNode& node, LaneBits lanes, Packet& packet) {
         const ObjectLeaf& leaf = leaves_.leaves[node.first()];
         const float* const runs = leaves_.triangle_runs.data() + kTriangleRuns * leaf.first_triangle;
-        packet_.test(runs, leaf.triangles, mask_of(lanes),
-                     [&](std::size_t lane, std::size_t i, float t, float u, float v) HWY_ATTR {
-                         keep_triangle(leaves_.triangles[leaf.first_triangle + i], {.t = t, .u = u, .v = v},
-                                       hits_[block_.id[first_ + lane]]);
-                     });
+        packet_.test(
+            runs, leaf.triangles, mask_of(lanes), [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
+                keep_triangle(leaves_.triangles[leaf.first_triangle + i], hit, hits_[block_.id[first_ + lane]]);
+            });
         const float* const spheres = leaves_.sphere_runs.data() + 4 * leaf.first_sphere;
         for (std::size_t i = 0; i < leaf.spheres; ++i) {
             const std::uint32_t name = leaves_.spheres[leaf.first_sphere + i];
@@ -220,9 +218,8 @@ private:
     }
 
     HWY_INLINE void decide_triangles() {
-        triangles_.decide([&](std::uint32_t i, std::uint32_t name, float t, float u, float v) HWY_ATTR {
-            keep_triangle(leaves_.triangles[name], {.t = t, .u = u, .v = v}, hits_[block_.id[i]]);
-        });
+        triangles_.decide([&](std::uint32_t i, std::uint32_t name, const ShapeHit& hit)
+                              HWY_ATTR { keep_triangle(leaves_.triangles[name], hit, hits_[block_.id[i]]); });
     }
 
     HWY_INLINE void decide_spheres() {

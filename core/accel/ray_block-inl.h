@@ -94,7 +94,7 @@ private:
     static constexpr double kBoundsTolerance = 0x1p-21;
 
     HWY_INLINE void write(RayBlock& block, std::size_t i) const {
-        static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 5 * sizeof(float));
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float));
         const DoubleTag dd;
         const HalfFloatTag df;
         const HalfIndexTag di;
@@ -103,7 +103,7 @@ private:
                                HWY_ATTR { return hn::GatherIndex(df, rays_ + offset, hn::ShiftLeft<3>(id)); };
         const HalfFloats px = field(0), py = field(1), pz = field(2), t_min = field(3);
         const HalfFloats vx = field(4), vy = field(5), vz = field(6), t_max = field(7);
-        const HalfFloats best = hn::GatherIndex(df, hits_, hn::Add(hn::ShiftLeft<2>(id), id));
+        const HalfFloats best = hn::GatherIndex(df, hits_, hn::Add(hn::ShiftLeft<2>(id), hn::ShiftLeft<1>(id)));
         auto usable = can_hit(px, py, pz, vx, vy, vz, t_min, t_max);
 
         DoubleVec3 o{hn::PromoteTo(dd, px), hn::PromoteTo(dd, py), hn::PromoteTo(dd, pz)};

@@ -57,7 +57,7 @@ bool intersect_shape(const TracedObject& object, const TracedRay& world, const T
 
 /// Makes `hit` the best one if it comes before it.
 inline void keep_closer(const ShapeHit& hit, std::uint32_t object, std::uint32_t primitive, Hit& best) {
-    const Hit candidate{hit.t, hit.u, hit.v, object, primitive};
+    const Hit candidate{hit.t, hit.u, hit.v, object, primitive, hit.t_rest};
     if (is_closer(candidate, best)) best = candidate;
 }
 

@@ -81,7 +81,7 @@ public:
         return size_ == kRoom;
     }
 
-    /// Calls accept(i, name, t, u, v) for each triangle added that ray i of the block hits at t within [t_min, t_max].
+    /// Calls accept(i, name, ShapeHit) for each triangle added that ray i of the block hits at t within [t_min, t_max].
     template <typename Accept>
     HWY_INLINE void decide(const Accept& accept) {
         // Apart from the filter, which so waits for no branch.
@@ -168,9 +168,9 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
             const std::size_t k = first_lane(bits);
             const std::uint32_t ray_index = candidates_.ray[i + k];
             const Ray& limits = rays_[block_.id[ray_index]];
-            const auto at = static_cast<float>(t[k]);
-            if (!TRange{limits.t_min, limits.t_max}.contains(at)) continue;
-            accept(ray_index, candidates_.name[i + k], at, static_cast<float>(us[k]), static_cast<float>(vs[k]));
+            const ShapeHit found = triangle_hit(t[k], us[k], vs[k]);
+            if (!TRange{limits.t_min, limits.t_max}.contains(found.t)) continue;
+            accept(ray_index, candidates_.name[i + k], found);
         }
     }
     candidates_.size = 0;

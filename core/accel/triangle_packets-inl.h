@@ -36,7 +36,7 @@ public:
         depth_range(depth_[lane], block_.pad[i], rays_[block_.id[i]].t_min, t_max, z_begin_[lane], z_end_[lane]);
     }
 
-    /// Calls accept(lane, i, t, u, v) for each ray in `here` that triangle i of the n of a leaf hits at t within
+    /// Calls accept(lane, i, ShapeHit) for each ray in `here` that triangle i of the n of a leaf hits at t within
     /// [t_min, t_max].
     template <typename Accept>
     HWY_INLINE void test(const float* runs, std::size_t n, FloatMask here, const Accept& accept) const {
@@ -80,9 +80,9 @@ private:
             for (part &= bits_of(dd, hits.hit); part != 0; part &= part - 1) {
                 const std::size_t k = first_lane(part);
                 const Ray& limits = rays_[block_.id[first_ + lane + k]];
-                const auto at = static_cast<float>(t[k]);
-                if (!TRange{limits.t_min, limits.t_max}.contains(at)) continue;
-                accept(lane + k, i, at, static_cast<float>(u[k]), static_cast<float>(v[k]));
+                const ShapeHit found = triangle_hit(t[k], u[k], v[k]);
+                if (!TRange{limits.t_min, limits.t_max}.contains(found.t)) continue;
+                accept(lane + k, i, found);
             }
         }
     }

@@ -29,7 +29,7 @@ MetalBsdf Metal::bsdf(const Vec2& uv) const {
 BsdfValue MetalBsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
     if (ggx.is_smooth() || !(wo.z * wi.z > 0)) return {};
     const Vec3 o = upper(wo), i = upper(wi);
-    const float facet_pdf = ggx.reflection_pdf(o, glm::normalize(o + i));
+    const float facet_pdf = ggx.reflection_pdf(o, half_vector(o, i));
     if (!multiscatter) return {reflectance * (ggx.g1(i) * facet_pdf), facet_pdf};
 
     const float total = ggx_albedo(o.z, ggx.alpha).total;

@@ -72,6 +72,12 @@ inline bool is_smooth_everywhere(const FloatValue& roughness) {
     return alpha_of(roughness.value) < kSmoothAlpha && (!roughness.texture || roughness.value == 0);
 }
 
+/// The normal that mirrors one of these directions into the other. Along the surface two directions nearly cancel: what
+/// their rounding to float leaves there is taken out by giving them unit length in double.
+inline Vec3 half_vector(const Vec3& wo, const Vec3& wi) {
+    return Vec3(glm::normalize(glm::normalize(Vec3d(wo)) + glm::normalize(Vec3d(wi))));
+}
+
 /// `w` mirrored by the unit normal m.
 inline Vec3 reflect(const Vec3& w, const Vec3& m) {
     return 2 * glm::dot(w, m) * m - w;

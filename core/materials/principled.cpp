@@ -89,7 +89,7 @@ BsdfValue PrincipledBsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
     if (wo.z == 0 || wi.z == 0 || !has_smooth_lobe()) return {};
     const bool reflects = wo.z * wi.z > 0;
     const Vec3 o = upper(wo), i = upper(wi);
-    const Vec3 m = glm::normalize(o + i);         // of light that passes: as if it had been reflected
+    const Vec3 m = half_vector(o, i);             // of light that passes: as if it had been reflected
     const float o_m = 0.5f * glm::length(o + i);  // the same for wo and wi to the last bit
     const Split split(*this, o.z);
     const GgxAlbedo facets_i = ggx_albedo(i.z, facets.alpha), average = ggx_average_albedo(facets.alpha);

@@ -57,9 +57,9 @@ inline bool intersect_triangle(const TriangleRay& ray, const Vec3& va, const Vec
     if (determinant == 0) return false;
 
     const double inverse = 1 / determinant;
-    const float t = static_cast<float>((u * a.z + v * b.z + w * c.z) * inverse * ray.inverse_z);
-    if (!range.contains(t)) return false;
-    hit = {.t = t, .u = static_cast<float>(v * inverse), .v = static_cast<float>(w * inverse)};
+    const double t = (u * a.z + v * b.z + w * c.z) * inverse * ray.inverse_z;
+    if (!range.contains(static_cast<float>(t))) return false;
+    hit = triangle_hit(t, v * inverse, w * inverse);
     return true;
 }
 
@@ -81,7 +81,7 @@ inline bool intersect_quad(const TriangleRay& ray, const std::array<Vec3, 4>& co
         ShapeHit other;
         if (!intersect_triangle(ray, corners[a], corners[b], corners[c], range, other)) continue;
         set_quad_parameters(half, other);
-        if (!found || other.t < hit.t) hit = other;
+        if (!found || other.t < hit.t || (other.t == hit.t && other.t_rest < hit.t_rest)) hit = other;
         found = true;
     }
     return found;

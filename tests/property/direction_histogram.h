@@ -55,7 +55,7 @@ private:
     struct Rect {
         Interval theta, phi;
     };
-    /// A part of a cell to be integrated at once, with the bounds of the few directions of the pilot in it.
+    /// A part of a cell to be integrated at once, with where most of the few directions of the pilot in it lie.
     struct Patch : Rect {
         Interval points_theta, points_phi;
         double share;  ///< Of the pilot's directions.
@@ -66,7 +66,7 @@ private:
         std::array<int, 2> child{};
         int cell = 0;
     };
-    static constexpr std::size_t kPerPatch = 4;
+    static constexpr std::size_t kPerPatch = 8;
 
     static Polar polar(const Vec3& w) {
         return {std::atan2(std::hypot(double(w.x), double(w.y)), double(w.z)), std::atan2(double(w.y), double(w.x))};
@@ -108,7 +108,7 @@ private:
     void add_patches(const Rect& r, std::vector<Polar>& points, int depth) {
         if (points.size() < 2 * kPerPatch) {
             cells_.back().push_back(
-                {r, bounds(points, 0, r.theta), bounds(points, 1, r.phi), static_cast<double>(points.size()) / pilot_});
+                {r, core(points, 0, r.theta), core(points, 1, r.phi), static_cast<double>(points.size()) / pilot_});
             return;
         }
         std::array<Rect, 2> rects{r, r};
@@ -128,11 +128,20 @@ private:
         return split;
     }
 
-    static Interval bounds(const std::vector<Polar>& points, int axis, const Interval& all) {
+    /// The shortest interval that has more than half of the points: where a narrow lobe reaches into a wide one, the others
+    /// may lie anywhere.
+    static Interval core(const std::vector<Polar>& points, int axis, const Interval& all) {
         if (points.size() < 2) return all;
-        Interval i{all.hi, all.lo};
-        for (const Polar& p : points) i = {std::min(i.lo, p[axis]), std::max(i.hi, p[axis])};
-        return i;
+        std::vector<double> sorted;
+        for (const Polar& p : points) sorted.push_back(p[axis]);
+        std::ranges::sort(sorted);
+        const std::size_t span = points.size() / 2;
+        Interval shortest{sorted.front(), sorted.back()};
+        for (std::size_t i = 0; i + span < sorted.size(); ++i) {
+            const Interval part{sorted[i], sorted[i + span]};
+            if (part.size() < shortest.size()) shortest = part;
+        }
+        return shortest;
     }
 
     /// Breaks of `all`: where the points lie, and in growing steps from there, as the tails of a lobe want it.

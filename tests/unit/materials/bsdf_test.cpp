@@ -144,8 +144,8 @@ TEST(Ggx, TabulatedAlbedoAgreesWithSampling) {
                 grazing.add(weight * schlick_weight(std::min(1.0f, glm::dot(wo, m))));
             }
             const GgxAlbedo table = ggx_albedo(wo.z, ggx.alpha);
-            EXPECT_NEAR(table.total, total.mean(), 0.003 + 4 * total.error()) << roughness << " " << angle;
-            EXPECT_NEAR(table.grazing, grazing.mean(), 0.003 + 4 * grazing.error()) << roughness << " " << angle;
+            EXPECT_NEAR(table.total, total.mean(), 0.0004 + 4 * total.error()) << roughness << " " << angle;
+            EXPECT_NEAR(table.grazing, grazing.mean(), 0.001 + 4 * grazing.error()) << roughness << " " << angle;
         }
     }
 }
