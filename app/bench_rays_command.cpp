@@ -45,16 +45,11 @@ struct Contestant {
     std::vector<double> seconds{};
 };
 
-double median_of(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    return values[values.size() / 2];
-}
-
 Measured mrays(const Contestant& one) {
     return bootstrap(one.seconds.size(), [&](std::span<const std::size_t> taken) {
         std::vector<double> seconds;
         for (const std::size_t i : taken) seconds.push_back(one.seconds[i]);
-        return static_cast<double>(one.rays) / median_of(std::move(seconds)) * 1e-6;
+        return static_cast<double>(one.rays) / median(std::move(seconds)) * 1e-6;
     });
 }
 
@@ -66,7 +61,7 @@ Measured ratio(const Contestant& ours, const Contestant& theirs) {
             ratios.push_back(theirs.seconds[i] / ours.seconds[i] * static_cast<double>(ours.rays) /
                              static_cast<double>(theirs.rays));
         }
-        return median_of(std::move(ratios));
+        return median(std::move(ratios));
     });
 }
 

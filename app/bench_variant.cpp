@@ -43,6 +43,7 @@ void visit_settings(RenderSettings& render, PathTracerOptions& options, const Vi
     visit("light_sampling", options.light_sampling);
     visit("mis", options.mis);
     visit("russian_roulette", options.russian_roulette);
+    for (const ShortcutField& shortcut : kShortcuts) visit(shortcut.key, options.shortcuts.*shortcut.member);
 }
 
 Result<void> apply_setting(const std::string& setting, RenderSettings& render, PathTracerOptions& options) {

@@ -1,3 +1,4 @@
+#include "app/skip_gains.h"
 #include "app/subcommands.h"
 #include "app/text_table.h"
 #include "core/render/render_scene.h"
@@ -94,11 +95,7 @@ void print(const nlohmann::ordered_json& info, int indent = 0) {
 
 /// One sample of each pixel of a small image, to have something to count.
 std::shared_ptr<const Frame> glance_at(Scene scene) {
-    constexpr int kSide = 96;
-    const int longest = std::max(scene.film.width, scene.film.height);
-    const auto shrunk = [&](int side) { return std::max(1, side * std::min(kSide, longest) / longest); };
-    scene.film.width = shrunk(scene.film.width);
-    scene.film.height = shrunk(scene.film.height);
+    scene = shrunk(std::move(scene), 96);
     scene.render.max_samples = 1;
     scene.render.max_seconds = 0;
     RenderSession session({.interactive = false});
@@ -106,36 +103,55 @@ std::shared_ptr<const Frame> glance_at(Scene scene) {
     return session.wait({});
 }
 
-nlohmann::ordered_json describe(const std::vector<Skip>& skips, const RenderStatistics& statistics) {
+/// Null where it was not measured or cannot be put back.
+const SkipGain* gain_of(const Skip& skip, const std::vector<SkipGain>& gains) {
+    const auto found = std::ranges::find(gains, skip.name, &SkipGain::skip);
+    return found == gains.end() ? nullptr : &*found;
+}
+
+nlohmann::ordered_json describe(const std::vector<Skip>& skips, const std::vector<SkipGain>& gains,
+                                const RenderStatistics& statistics) {
     auto list = nlohmann::ordered_json::array();
     for (const Skip& skip : skips) {
         nlohmann::ordered_json entry = {{"name", skip.name}, {"state", name_of(skip.state)}, {"why", skip.why}};
         if (skip.saved > 0) entry["left_out"] = {{"amount", skip.saved}, {"unit", skip.unit}};
         if (skip.counter) entry["done"] = {{"amount", skip.counter(statistics)}, {"unit", skip.counted}};
+        if (const SkipGain* gain = gain_of(skip, gains)) {
+            entry["time_with_it"] = {{"ratio", gain->ratio.value},
+                                     {"interval", {gain->ratio.interval.low, gain->ratio.interval.high}}};
+        }
         list.push_back(std::move(entry));
     }
     return {{"skips", std::move(list)}, {"counted_in_camera_paths", statistics.samples}};
 }
 
-void print(const std::vector<Skip>& skips, const RenderStatistics& statistics) {
-    TextTable table(
-        5, {"what", "state", "left out", fmt::format("done in {} paths", grouped_text(statistics.samples)), "why"});
+void print(const std::vector<Skip>& skips, const std::vector<SkipGain>& gains, const RenderStatistics& statistics) {
+    const std::string done = fmt::format("done in {} paths", grouped_text(statistics.samples));
+    TextTable table(6, {"what", "state", "left out", done, gains.empty() ? "" : "time with it", "why"});
     for (const Skip& skip : skips) {
+        const SkipGain* gain = gain_of(skip, gains);
         table.add({std::string(skip.name), std::string(name_of(skip.state)),
                    skip.saved > 0 ? amount_text(skip.saved, skip.unit) : "",
-                   skip.counter ? amount_text(skip.counter(statistics), skip.counted) : "", skip.why});
+                   skip.counter ? amount_text(skip.counter(statistics), skip.counted) : "",
+                   gain ? fmt::format("x {:.2f}", gain->ratio.value) : "", skip.why});
     }
     fmt::print("{}", table.text());
 }
 
-Result<void> print_skips(const Scene& scene, bool json) {
+Result<void> print_skips(const Scene& scene, const InfoOptions& options) {
     const auto frame = glance_at(scene);
     if (!frame) return fail("", "", "the scene cannot be rendered");
+    std::vector<SkipGain> gains;
+    if (options.measure) {
+        auto measured = measure_skips(scene, {});
+        if (!measured) return tl::unexpected(measured.error());
+        gains = std::move(*measured);
+    }
     const std::vector<Skip> skips = skips_of(*frame);
-    if (json) {
-        fmt::print("{}\n", describe(skips, frame->statistics).dump(2));
+    if (options.json) {
+        fmt::print("{}\n", describe(skips, gains, frame->statistics).dump(2));
     } else {
-        print(skips, frame->statistics);
+        print(skips, gains, frame->statistics);
     }
     return {};
 }
@@ -145,7 +161,7 @@ Result<void> print_skips(const Scene& scene, bool json) {
 Result<void> run_info(const InfoOptions& options) {
     auto scene = load_scene(options.scene);
     if (!scene) return tl::unexpected(scene.error());
-    if (options.skips) return print_skips(*scene, options.json);
+    if (options.skips || options.measure) return print_skips(*scene, options);
     BuildControl control;
     const auto shared = std::make_shared<const Scene>(std::move(*scene));
     const auto built = RenderScene::update(nullptr, shared, all_changes(), control);

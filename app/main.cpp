@@ -109,6 +109,7 @@ void add_info(CLI::App& app, InfoOptions& options) {
     CLI::App& command = *app.add_subcommand("info", "Print what a scene holds and how its tree came out");
     command.add_option("scene", options.scene, "Scene to read")->required();
     command.add_flag("--skips", options.skips, "Instead: what the renderer leaves out for this scene, and why");
+    command.add_flag("--measure", options.measure, "The same, and how much longer a render takes with each put back");
     command.add_flag("--json", options.json, "As JSON");
 }
 

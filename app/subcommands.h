@@ -46,7 +46,8 @@ struct ScreenshotOptions {
 
 struct InfoOptions {
     std::filesystem::path scene;
-    bool skips = false;  ///< What the renderer leaves out, instead.
+    bool skips = false;    ///< What the renderer leaves out, instead.
+    bool measure = false;  ///< The same, and what that saves.
     bool json = false;
 };
 

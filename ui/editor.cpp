@@ -87,6 +87,7 @@ void Editor::begin_frame(std::uint64_t gesture) {
     if (paused != session_paused_) session_.set_paused(session_paused_ = paused);
     if (threads != session_threads_) session_.set_threads(session_threads_ = threads);
     if (sampling.options() != session_sampling_) session_.set_sampling(session_sampling_ = sampling.options());
+    if (shortcuts != session_shortcuts_) session_.set_shortcuts(session_shortcuts_ = shortcuts);
     if (film_size_ && !view.match_window) {
         film_size_.reset();
         show();

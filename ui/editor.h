@@ -107,6 +107,7 @@ public:
     bool paused = false;
     int threads = 0;
     SamplingSettings sampling;
+    Shortcuts shortcuts;  ///< Of this run of the program: all are taken again at the next.
     bool wants_quit = false;
     std::function<void(Editor&)> unsaved_action;  ///< What waits for the answer to "save changes?".
 
@@ -138,6 +139,7 @@ private:
     bool session_paused_ = false;
     int session_threads_ = 0;
     SamplingOptions session_sampling_;
+    Shortcuts session_shortcuts_;
 };
 
 }  // namespace rayuela

@@ -61,13 +61,13 @@ bool KdAccelerator::build_objects(BuildControl& control) {
         if (objects_[i].is_plane()) planes_.push_back(i);
         if (!mesh) ++stats_.primitives;
     }
-    const bool few = settings_.split == KdSplit::sah && objects_.size() <= kFewObjects;
+    const bool few = settings_.few_objects && tests_few_objects(settings_, objects_.size());
     const int leaf_size = few ? std::max(settings_.leaf_size, static_cast<int>(kFewObjects)) : settings_.leaf_size;
     auto tree = build_kd_tree({.bounds = bounds, .split = settings_.split, .leaf_size = leaf_size}, control);
     if (!tree) return false;
     tree_ = std::move(*tree);
     leaves_ = make_object_leaves(objects_, tree_);
-    if (tree_.nodes.size() == 1 && !tree_.references.empty()) bounds_ = std::move(bounds);
+    if (few && tree_.nodes.size() == 1 && !tree_.references.empty()) bounds_ = std::move(bounds);
     const std::unordered_set<const MeshTree*> in_use(mesh_of_object_.begin(), mesh_of_object_.end());
     for (const auto& [mesh, mesh_tree] : mesh_trees_) {
         if (in_use.contains(mesh_tree.get())) {

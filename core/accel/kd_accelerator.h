@@ -10,6 +10,10 @@ namespace rayuela {
 /// spheres in a room take as long either way where they are about 300, and 0.65 to 0.8 of the tree's time below 130.
 inline constexpr std::size_t kFewObjects = 160;
 
+inline bool tests_few_objects(const AccelSettings& settings, std::size_t objects) {
+    return settings.split == KdSplit::sah && objects <= kFewObjects;
+}
+
 /// Two levels of kd-trees: one over each distinct mesh in its own space, one over the objects. Planes are tested in turn.
 class KdAccelerator final : public Accelerator {
 public:

@@ -7,6 +7,7 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <array>
 #include <istream>
 #include <streambuf>
 
@@ -15,7 +16,28 @@ namespace rayuela {
 namespace {
 
 constexpr std::size_t kMaxProblems = 10;
-constexpr std::string_view kBlanks = " \t\r\n";
+
+/// A set of characters to search for: the standard library's searches call a function for each character of the text.
+class Letters {
+public:
+    explicit constexpr Letters(std::string_view letters) {
+        for (const char c : letters) in_[static_cast<unsigned char>(c)] = true;
+    }
+    constexpr bool contains(char c) const { return in_[static_cast<unsigned char>(c)]; }
+    /// How many characters `text` begins with that are in the set, or that are not.
+    std::size_t run(std::string_view text) const { return run(text, true); }
+    std::size_t run_of_others(std::string_view text) const { return run(text, false); }
+
+private:
+    std::size_t run(std::string_view text, bool wanted) const {
+        std::size_t n = 0;
+        while (n < text.size() && contains(text[n]) == wanted) ++n;
+        return n;
+    }
+    std::array<bool, 256> in_{};
+};
+
+constexpr Letters kBlanks(" \t\r\n"), kDigits("0123456789"), kNumber("0123456789+-.eE"), kIndices("0123456789-/");
 
 /// Hands out a text line by line, so that a callback of the parser can tell its line, and refuses what the parser would
 /// silently read as 0.
@@ -54,21 +76,20 @@ protected:
 
 private:
     void check(std::string_view line) {
-        line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-        const std::string_view keyword = line.substr(0, line.find_first_of(kBlanks));
+        line.remove_prefix(kBlanks.run(line));
+        const std::string_view keyword = line.substr(0, kBlanks.run_of_others(line));
         line.remove_prefix(keyword.size());
-        if (keyword == "v" || keyword == "vn") check_words(line, "0123456789+-.eE", 3, 64);
-        if (keyword == "vt") check_words(line, "0123456789+-.eE", 1, 64);
-        if (keyword == "f" && check_words(line, "0123456789-/", 3, 64)) check_indices(line);
+        if (keyword == "v" || keyword == "vn") check_words(line, kNumber, 3, 64);
+        if (keyword == "vt") check_words(line, kNumber, 1, 64);
+        if (keyword == "f" && check_words(line, kIndices, 3, 64)) check_indices(line);
     }
 
     /// The parser's integers wrap round where they overflow.
     void check_indices(std::string_view line) {
-        constexpr std::string_view kDigits = "0123456789";
         while (true) {
-            line.remove_prefix(std::min(line.find_first_of(kDigits), line.size()));
+            line.remove_prefix(kDigits.run_of_others(line));
             if (line.empty()) return;
-            const std::size_t length = std::min(line.find_first_not_of(kDigits), line.size());
+            const std::size_t length = kDigits.run(line);
             if (length > 9)
                 return problem(
                     line_, fmt::format("the index {} is too large", line.substr(0, std::min<std::size_t>(length, 32))));
@@ -76,13 +97,13 @@ private:
         }
     }
 
-    bool check_words(std::string_view line, std::string_view letters, std::size_t min_count, std::size_t max_length) {
+    bool check_words(std::string_view line, const Letters& letters, std::size_t min_count, std::size_t max_length) {
         std::size_t count = 0;
         for (;; ++count) {
-            line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+            line.remove_prefix(kBlanks.run(line));
             if (line.empty()) break;
-            const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-            if (word.size() > max_length || word.find_first_not_of(letters) != std::string_view::npos) {
+            const std::string_view word = line.substr(0, kBlanks.run_of_others(line));
+            if (word.size() > max_length || letters.run(word) < word.size()) {
                 problem(line_, fmt::format("'{}' is no number", word.substr(0, 32)));
                 return false;
             }

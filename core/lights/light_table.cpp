@@ -50,8 +50,8 @@ std::optional<LightSample> LightTable::sample(const LightReceiver& receiver, con
     return sample_area_light(receiver, {std::min(rest, 1 - kUnitRoundoff), u.y});
 }
 
-void LightTable::sample(LightBlock& block) const {
-    if (few_) {
+void LightTable::sample(LightBlock& block, bool together) const {
+    if (few_ && together) {
         few_->sample(block);
         return;
     }

@@ -39,8 +39,10 @@ public:
     /// Where `u` is stratified, so are the points of each light. Nothing where the point does not shine towards it.
     std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
 
-    /// The same for many points, to the last bit.
-    void sample(LightBlock& block) const;
+    /// The same for many points, to the last bit: one by one, or all together where the lights allow it.
+    void sample(LightBlock& block, bool together = true) const;
+    /// Whether they do.
+    bool samples_together() const { return few_.has_value(); }
 
     /// Density per solid angle with which `sample` draws the unit direction `wi`, which hits the surface `hit` at
     /// `hit_point` (unit geometric normal `ng` of the front). 0 where it would not.

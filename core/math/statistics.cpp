@@ -39,6 +39,12 @@ Measured bootstrap(std::size_t count, const Statistic& statistic) {
     return {value, {quantile(values, kTail), quantile(values, 1 - kTail)}};
 }
 
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
 double slope(std::span<const double> x, std::span<const double> y) {
     const auto n = static_cast<double>(x.size());
     const double mx = std::accumulate(x.begin(), x.end(), 0.0) / n, my = std::accumulate(y.begin(), y.end(), 0.0) / n;

@@ -2,6 +2,7 @@
 
 #include "core/accel/accelerator.h"
 #include "core/math/image.h"
+#include "core/render/shortcuts.h"
 #include "core/scene/scene.h"
 
 #include <array>
@@ -55,6 +56,7 @@ struct RenderStatistics {
     AccelStats accel;
     std::uint64_t memory_bytes = 0;  ///< Trees, meshes, images and film.
     std::uint64_t restarts = 0;      ///< How often accumulation has started anew since the session began.
+    Shortcuts shortcuts;             ///< Those in use.
     int threads = 0;
     bool adaptive = false;  ///< Samples go where the noise is.
     SampleSpread spread;

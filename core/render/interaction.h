@@ -13,14 +13,16 @@ namespace rayuela {
 /// A hit with everything that shading asks for, as seen from where a path came. Keeps references to what it was made of.
 class Interaction {
 public:
-    /// `wo` is unit, towards where the path came from.
+    /// `wo` is unit, towards where the path came from. `varies`: the Bsdf has to be worked out here.
     Interaction(const SurfacePoint& surface, const PackedMaterial& packed, const Vec3& towards)
+        : Interaction(surface, packed, towards, packed.textured) {}
+    Interaction(const SurfacePoint& surface, const PackedMaterial& packed, const Vec3& towards, bool varies)
         : point(surface),
           material(packed),
           wo(towards),
           frame(shading_normal(towards)),
           wo_local(frame.to_local(towards)),
-          varying_(packed.textured ? std::optional(make_bsdf(packed.material, surface.uv)) : std::nullopt) {}
+          varying_(varies ? std::optional(make_bsdf(packed.material, surface.uv)) : std::nullopt) {}
 
     const SurfacePoint& point;
     const PackedMaterial& material;

@@ -86,11 +86,13 @@ HWY_INLINE FloatMask light_paths(const MatteTask& task, const InteractionLanes& 
     const Vec3Lanes value = load(block.albedo, i) * bsdf_pdf;
     const Vec3Lanes arriving = load(block.throughput, i) * value * load(block.light.radiance, i) * (weight / pdf);
     lit = hn::And(lit, hn::Not(is_black(arriving)));
+    const Vec3Lanes bringing = select(lit, arriving, all_lanes(Vec3(0)));
+    if (task.black_shadow_rays) lit = positive(pdf);
     const Vec3Lanes origin = at.ray_origin(wi);
     store(origin, block.shadow_origin, i);
     store(select(hn::Eq(load(block.light.distance, i), all_lanes(kInfinity)), wi, load(block.light.target, i) - origin),
           block.shadow_direction, i);
-    store(arriving, block.shadow_light, i);
+    store(bringing, block.shadow_light, i);
     return lit;
 }
 

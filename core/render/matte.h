@@ -38,6 +38,7 @@ struct MatteTask {
     SamplerKind sampler;
     std::uint32_t light_dimension, direction_dimension, roulette_dimension;
     bool samples_lights, mis;
+    bool black_shadow_rays;     ///< Also where they bring nothing.
     float roulette_throughput;  ///< Below it paths may be cut; 0 where not yet.
 };
 

@@ -5,6 +5,7 @@
 #include "core/render/aimed_bsdf.h"
 #include "core/render/interaction.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace rayuela {
@@ -100,13 +101,14 @@ void PathTracer::camera_rays(PathBatch& batch) const {
     for (std::size_t i = 0; i < n; ++i)
         batch.samplers[i] = Sampler(settings.sampler, settings.seed, batch.ids[i].pixel, batch.ids[i].sample);
     draw_2d(batch.samplers, kFilter, batch.filter_numbers);
-    if (scene_.features().lens) draw_2d(batch.samplers, kLens, batch.lens_numbers);
+    const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;
+    if (lens_extends) draw_2d(batch.samplers, kLens, batch.lens_numbers);
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint32_t pixel = batch.ids[i].pixel;
         const auto width = static_cast<std::uint32_t>(width_);
         const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
         const Vec2 position = (centre + sample_filter(filter, batch.filter_numbers[i])) * pixel_size;
-        const Vec2 lens = scene_.features().lens ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
+        const Vec2 lens = lens_extends ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
         batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
         batch.rays[i] = camera_.ray(position, lens);
     }
@@ -124,12 +126,24 @@ void PathTracer::surface_interactions(PathBatch& batch) const {
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
         const Hit& hit = batch.hits[i];
         if (!hit.valid()) continue;
-        batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, scene_.packed_material(hit.object).textured);
+        batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, varies(scene_.packed_material(hit.object)));
     }
 }
 
+/// Whether the Bsdf has to be worked out at the hit.
+bool PathTracer::varies(const PackedMaterial& material) const {
+    return material.textured || !options_.shortcuts.ready_materials;
+}
+
+/// Of a surface to be shaded in a MatteBlock.
+std::optional<Color> PathTracer::matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const {
+    if (!material.matte || !options_.shortcuts.matte_blocks) return std::nullopt;
+    return varies(material) ? std::get<Diffuse>(material.material).bsdf(point.uv).albedo : material.matte;
+}
+
 void PathTracer::shade(PathBatch& batch, int bounce) const {
-    const bool last = bounce >= scene_.scene().render.max_bounces || !scene_.features().any_light();
+    const bool dark = options_.shortcuts.no_light && !scene_.features().any_light();
+    const bool last = bounce >= scene_.scene().render.max_bounces || dark;
     batch.shadow_rays.clear();
     batch.shadow_light.clear();
     batch.shadow_parts.clear();
@@ -141,18 +155,19 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         const Hit& hit = batch.hits[i];
         if (bounce == 0) batch.first_object[state.path] = hit.object;
         if (!hit.valid()) {
-            if (!scene_.features().environment) continue;
+            if (!scene_.features().environment && options_.shortcuts.no_sky) continue;
             ++batch.counts.environment_lookups;
             batch.radiance[state.part] += environment_light(state, ray.direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
-        if (options_.matte_blocks && material.matte && !aims(state, bounce)) {
-            if (!last) add_matte(batch, i, *material.matte, bounce);
+        batch.counts.textured_hits += varies(material);
+        if (const auto albedo = matte_albedo(material, batch.points[i]); albedo && !aims(state, bounce)) {
+            if (!last) add_matte(batch, i, *albedo, bounce);
             continue;
         }
-        batch.counts.textured_hits += material.textured;
-        const Interaction& at = batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction);
+        const Interaction& at =
+            batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies(material));
         if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);
         batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
@@ -202,7 +217,7 @@ void PathTracer::draw_numbers(PathBatch& batch, int bounce) const {
         block.light.u[k] = block.light_numbers[k].x;
         block.light.v[k] = block.light_numbers[k].y;
     }
-    scene_.lights().sample(block.light);
+    scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);
 }
 
 /// Whether all caustics are left to this path: no lamp's path can be the same.
@@ -256,11 +271,13 @@ float PathTracer::scattering_weight(float bsdf_pdf, float light_pdf) const {
 void PathTracer::add_light(PathBatch& batch, const PathState& state, const Interaction& at, const AimedBsdf& bsdf,
                            const LightSample& light) const {
     const Vec3 wi = at.frame.to_local(light.wi);
-    if (!at.consistent(light.wi, wi)) return;
-    const BsdfValue f = bsdf.evaluate(wi, light.wi);
-    const float weight = options_.mis ? power_heuristic(light.pdf, f.pdf) : 1;
-    const Color arriving = state.throughput * f.value * light.radiance * (weight / light.pdf);
-    if (is_black(arriving)) return;
+    Color arriving(0);
+    if (at.consistent(light.wi, wi)) {
+        const BsdfValue f = bsdf.evaluate(wi, light.wi);
+        const float weight = options_.mis ? power_heuristic(light.pdf, f.pdf) : 1;
+        arriving = state.throughput * f.value * light.radiance * (weight / light.pdf);
+    }
+    if (is_black(arriving) && options_.shortcuts.black_shadow_rays) return;
     batch.shadow_rays.push_back(shadow_ray(at.ray_origin(light.wi), light));
     batch.shadow_light.push_back(arriving);
     batch.shadow_parts.push_back(state.part);
@@ -309,6 +326,7 @@ MatteTask PathTracer::matte_task(int bounce) const {
             .roulette_dimension = dimension(bounce, kRoulette),
             .samples_lights = light_sampling_,
             .mis = options_.mis,
+            .black_shadow_rays = !options_.shortcuts.black_shadow_rays,
             .roulette_throughput = roulette ? kRouletteThroughput : 0};
 }
 
@@ -316,7 +334,13 @@ void PathTracer::add_unblocked_light(PathBatch& batch) const {
     const std::size_t n = batch.shadow_rays.size();
     if (n == 0) return;
     batch.blocked.resize(n);
-    scene_.accelerator().occluded(batch.shadow_rays, batch.blocked);
+    if (options_.shortcuts.any_hit) {
+        scene_.accelerator().occluded(batch.shadow_rays, batch.blocked);
+    } else {
+        batch.hits.resize(n);
+        scene_.accelerator().intersect(batch.shadow_rays, batch.hits);
+        std::ranges::transform(batch.hits, batch.blocked.begin(), [](const Hit& hit) { return hit.valid() ? 1 : 0; });
+    }
     batch.counts.shadow_rays += n;
     for (std::size_t i = 0; i < n; ++i) {
         if (!batch.blocked[i]) batch.radiance[batch.shadow_parts[i]] += batch.shadow_light[i];

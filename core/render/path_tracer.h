@@ -5,6 +5,7 @@
 #include "core/render/path_batch.h"
 #include "core/render/path_record.h"
 #include "core/render/render_scene.h"
+#include "core/render/shortcuts.h"
 
 #include <atomic>
 #include <optional>
@@ -20,7 +21,7 @@ struct PathTracerOptions {
     bool mis = true;             ///< Else light that can be sampled counts by its samples alone, after smooth lobes.
     bool russian_roulette = true;
     bool light_tracing = true;  ///< Else caustics are found by camera paths alone, and by chance. Needs light_sampling.
-    bool matte_blocks = true;   ///< Else diffuse surfaces are shaded one by one, with the same result to the last bit.
+    Shortcuts shortcuts;        ///< But for few_objects, which the render scene heeds.
 };
 
 /// Unidirectional path tracing with light sampling (Kajiya 1986; combined by multiple importance sampling, Veach & Guibas
@@ -69,6 +70,8 @@ private:
                int bounce) const;
     void scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
                  const ScatterNumbers& numbers, int bounce) const;
+    bool varies(const PackedMaterial& material) const;
+    std::optional<Color> matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const;
     void add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const;
     void shade_matte(PathBatch& batch, int bounce) const;
     MatteTask matte_task(int bounce) const;

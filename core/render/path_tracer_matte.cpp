@@ -34,7 +34,7 @@ void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
     const MatteTask task = matte_task(bounce);
     if (task.samples_lights) {
         prepare_light_samples(task, block);
-        scene_.lights().sample(block.light);
+        scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);
     }
     scatter_matte(task, block);
     for (std::uint64_t rest = block.casts_shadow_ray; rest != 0; rest &= rest - 1) {

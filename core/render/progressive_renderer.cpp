@@ -60,11 +60,25 @@ void ProgressiveRenderer::set_sampling(const SamplingOptions& sampling) {
     }
 }
 
+void ProgressiveRenderer::set_shortcuts(const Shortcuts& shortcuts) {
+    const Shortcuts before = std::exchange(options_.shortcuts, shortcuts);
+    if (!render_scene_ || before == shortcuts) return;
+    if (before.few_objects != shortcuts.few_objects) {
+        BuildControl control;
+        render_scene_ = arena_.execute([&] {
+            return RenderScene::update(render_scene_.get(), render_scene_->shared_scene(), {.accel = true}, control,
+                                       shortcuts);
+        });
+    }
+    restart();
+}
+
 bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl& control) {
     const SceneChanges changes = render_scene_ ? diff(render_scene_->scene(), *scene) : all_changes();
     const auto start = Clock::now();
-    auto updated =
-        arena_.execute([&] { return RenderScene::update(render_scene_.get(), std::move(scene), changes, control); });
+    auto updated = arena_.execute([&] {
+        return RenderScene::update(render_scene_.get(), std::move(scene), changes, control, options_.shortcuts);
+    });
     if (!updated) return false;
     const glm::ivec2 size(updated->scene().film.width, updated->scene().film.height);
     if (!has_size(film_.get(), size)) {
@@ -207,6 +221,7 @@ RenderStatistics ProgressiveRenderer::statistics(SessionPhase phase) const {
             .accel = render_scene_->accelerator().stats(),
             .memory_bytes = memory_bytes_,
             .restarts = restarts_,
+            .shortcuts = options_.shortcuts,
             .threads = threads_,
             .adaptive = sampling_.target_error > 0,
             .spread = film_->spread(),

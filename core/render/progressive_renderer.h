@@ -25,6 +25,8 @@ public:
     void set_threads(int threads);
     void set_paused(bool paused) { paused_ = paused; }
     void set_sampling(const SamplingOptions& sampling);
+    /// Rebuilds the tree over the objects where that is put back or left out again, and restarts.
+    void set_shortcuts(const Shortcuts& shortcuts);
     /// Throws all samples away.
     void restart();
 
@@ -54,7 +56,7 @@ private:
     bool film_complete() const { return film_->samples() > 0; }
 
     const bool interactive_;
-    const PathTracerOptions options_;
+    PathTracerOptions options_;
     SamplingOptions sampling_;
     bool paused_ = false;
     int threads_ = 0;

@@ -155,7 +155,8 @@ void RenderScene::flatten(std::vector<GeometryInstance>& instances, FlatObjects&
 }
 
 std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previous, std::shared_ptr<const Scene> scene,
-                                                       const SceneChanges& changes, BuildControl& control) {
+                                                       const SceneChanges& changes, BuildControl& control,
+                                                       const Shortcuts& shortcuts) {
     auto next = previous ? std::make_shared<RenderScene>(*previous) : std::make_shared<RenderScene>();
     next->scene_ = std::move(scene);
     const bool materials = !previous || changes.materials;
@@ -172,7 +173,9 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
         for (GeometryInstance& instance : instances) instance.to_world.translation -= next->origin_;
         next->objects_ = std::make_shared<const FlatObjects>(std::move(flat));
         if (trees) {
-            next->accelerator_ = Accelerator::build(std::move(instances), next->scene_->render.accel,
+            AccelSettings settings = next->scene_->render.accel;
+            settings.few_objects = shortcuts.few_objects;
+            next->accelerator_ = Accelerator::build(std::move(instances), settings,
                                                     previous ? &previous->accelerator() : nullptr, control);
             if (!next->accelerator_) return nullptr;
             if (geometry) next->surfaces_ = std::make_shared<const Surfaces>(next->accelerator_->instances());

@@ -7,6 +7,7 @@
 #include "core/lights/light_table.h"
 #include "core/materials/bsdf.h"
 #include "core/render/features.h"
+#include "core/render/shortcuts.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_diff.h"
 
@@ -32,9 +33,11 @@ struct PackedMaterial {
 /// an edit does not touch are shared between versions.
 class RenderScene {
 public:
-    /// Derives `scene`, sharing with `previous` (may be null) what `changes` leaves alone. Null when cancelled.
+    /// Derives `scene`, sharing with `previous` (may be null) what `changes` leaves alone. Null when cancelled. Heeds
+    /// Shortcuts::few_objects wherever trees are built.
     static std::shared_ptr<const RenderScene> update(const RenderScene* previous, std::shared_ptr<const Scene> scene,
-                                                     const SceneChanges& changes, BuildControl& control);
+                                                     const SceneChanges& changes, BuildControl& control,
+                                                     const Shortcuts& shortcuts = {});
 
     const Scene& scene() const { return *scene_; }
     /// Rays are traced in a space with the axes of the scene whose origin is here: next to the objects where those are far

@@ -23,6 +23,7 @@ struct Mail {
     std::optional<bool> paused;
     std::optional<int> threads;
     std::optional<SamplingOptions> sampling;
+    std::optional<Shortcuts> shortcuts;
 };
 
 /// A build under way, and for what.
@@ -158,6 +159,7 @@ bool RenderSession::Impl::receive(bool idle, Mail& received) {
 void RenderSession::Impl::handle(Mail& received) {
     if (received.threads) renderer.set_threads(*received.threads);
     if (received.sampling) renderer.set_sampling(*received.sampling);
+    if (received.shortcuts) renderer.set_shortcuts(*received.shortcuts);
     if (received.paused) renderer.set_paused(*received.paused);
     if (received.scene) take(std::move(received.scene));
     if (received.restart && renderer.has_scene()) renderer.restart();
@@ -258,6 +260,10 @@ void RenderSession::set_threads(int threads) {
 
 void RenderSession::set_sampling(const SamplingOptions& sampling) {
     impl_->send([&](Mail& mail) { mail.sampling = sampling; });
+}
+
+void RenderSession::set_shortcuts(const Shortcuts& shortcuts) {
+    impl_->send([&](Mail& mail) { mail.shortcuts = shortcuts; });
 }
 
 void RenderSession::restart() {

@@ -40,6 +40,8 @@ public:
     void set_threads(int threads);
     /// A new target error goes on with the samples that are there; another clamp restarts.
     void set_sampling(const SamplingOptions& sampling);
+    /// Puts work back that the scene does not need, or leaves it out again, and restarts: the image will be the same.
+    void set_shortcuts(const Shortcuts& shortcuts);
     /// Throws the accumulated samples away and starts anew.
     void restart();
 

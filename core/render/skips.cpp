@@ -39,6 +39,46 @@ Skip shadow_rays(const RenderScene& scene) {
             .counted = "shadow rays"};
 }
 
+Skip black_shadow_rays(const RenderScene& scene) {
+    const bool active = scene.features().light_sampling();
+    return {.name = "Shadow rays without light",
+            .state = skipped_where(active),
+            .why = active
+                       ? "No shadow ray where the lamp lies behind the surface, or the surface reflects nothing of it."
+                       : "There are no shadow rays.",
+            .shortcut = shortcut_of(&Shortcuts::black_shadow_rays)};
+}
+
+Skip nearest_hits(const RenderScene& scene) {
+    const bool active = scene.features().light_sampling();
+    return {.name = "Nearest hits of shadow rays",
+            .state = skipped_where(active),
+            .why = active ? "The first hit found blocks the light, whichever it is." : "There are no shadow rays.",
+            .shortcut = shortcut_of(&Shortcuts::any_hit)};
+}
+
+Skip lamps_one_by_one(const RenderScene& scene) {
+    const bool active = scene.lights().samples_together();
+    return {.name = "Points on lamps one by one",
+            .state = !scene.features().light_sampling() ? SkipState::absent : skipped_if(active),
+            .why = active ? "The lamps are few and plain: points on them are chosen many at once."
+                          : "Lamps are many or textured, or there is none.",
+            .shortcut = shortcut_of(&Shortcuts::lamp_blocks)};
+}
+
+Skip matte_one_by_one(const RenderScene& scene) {
+    std::uint64_t matte = 0;
+    const auto objects = static_cast<std::uint32_t>(scene.accelerator().instances().size());
+    for (std::uint32_t i = 0; i < objects; ++i) matte += scene.packed_material(i).matte.has_value();
+    return {.name = "Diffuse surfaces one by one",
+            .state = skipped_where(matte > 0),
+            .why = matte > 0 ? "Surfaces of one diffuse colour are shaded many at once."
+                             : "No surface is of one diffuse colour.",
+            .saved = matte,
+            .unit = "objects",
+            .shortcut = shortcut_of(&Shortcuts::matte_blocks)};
+}
+
 Skip light_samples_on_mirrors(const RenderScene& scene) {
     std::uint64_t mirrors = 0;
     const std::size_t objects = scene.accelerator().instances().size();
@@ -91,7 +131,8 @@ Skip bounces(const RenderScene& scene) {
             .state = skipped_if(active),
             .why = active ? "Nothing gives light: paths end where they hit something." : "There is light to find.",
             .counter = [](const RenderStatistics& s) { return s.rays - std::min(s.rays, s.samples); },
-            .counted = "scattered rays"};
+            .counted = "scattered rays",
+            .shortcut = shortcut_of(&Shortcuts::no_light)};
 }
 
 Skip environment(const RenderScene& scene) {
@@ -100,14 +141,16 @@ Skip environment(const RenderScene& scene) {
             .state = skipped_if(active),
             .why = active ? "No light comes from outside: a ray that leaves ends." : "Light comes from outside.",
             .counter = [](const RenderStatistics& s) { return s.environment_lookups; },
-            .counted = "look-ups"};
+            .counted = "look-ups",
+            .shortcut = shortcut_of(&Shortcuts::no_sky)};
 }
 
 Skip lens_samples(const RenderScene& scene) {
     const bool active = !scene.features().lens;
     return {.name = "Lens samples",
             .state = skipped_if(active),
-            .why = active ? "The lens is a point: everything is in focus." : "The lens has an extent."};
+            .why = active ? "The lens is a point: everything is in focus." : "The lens has an extent.",
+            .shortcut = shortcut_of(&Shortcuts::no_lens)};
 }
 
 Skip textures(const RenderScene& scene) {
@@ -119,7 +162,8 @@ Skip textures(const RenderScene& scene) {
                    ? "No material varies over a surface: each is worked out once, and no hit has texture coordinates."
                    : "A material varies over its surface.",
         .counter = [](const RenderStatistics& s) { return s.textured_hits; },
-        .counted = "textured hits"};
+        .counted = "textured hits",
+        .shortcut = shortcut_of(&Shortcuts::ready_materials)};
 }
 
 /// Objects that have a place in a tree.
@@ -138,14 +182,17 @@ Skip tree_over_objects(const RenderScene& scene) {
     const std::uint64_t objects = bounded_objects(scene);
     const auto* kd = dynamic_cast<const KdAccelerator*>(&scene.accelerator());
     const bool few = kd && !kd->has_object_tree();
+    const bool can_do_without =
+        kd && objects > 1 && tests_few_objects(kd->settings(), scene.accelerator().instances().size());
     return {.name = "Tree over the objects",
-            .state = skipped_if(!kd || few),
+            .state = skipped_if(!kd || few || can_do_without),
             .why = !kd ? "Every object is tried in turn, as the settings say."
                    : few && objects > 1
                        ? "Testing all " + count_of(objects, "object") + " for 16 rays at once is faster."
                    : objects > 1  ? count_of(objects, "object") + " stand in it."
                    : objects == 1 ? "There is one object: rays go straight to it."
-                                  : "There is no object that a tree could hold."};
+                                  : "There is no object that a tree could hold.",
+            .shortcut = can_do_without ? shortcut_of(&Shortcuts::few_objects) : nullptr};
 }
 
 Skip cells_of_trees(const RenderScene& scene) {
@@ -243,15 +290,19 @@ Skip samples_of_finished_pixels(const RenderStatistics& statistics) {
 }  // namespace
 
 std::string_view name_of(SkipState state) {
-    constexpr std::string_view kNames[] = {"skipped", "needed", "absent"};
+    constexpr std::string_view kNames[] = {"skipped", "put back", "needed", "absent"};
     return kNames[static_cast<std::size_t>(state)];
 }
 
 std::vector<Skip> skips_of(const RenderScene& scene) {
     std::vector<Skip> skips{shadow_rays(scene),
+                            black_shadow_rays(scene),
+                            nearest_hits(scene),
                             light_samples_on_mirrors(scene),
                             light_samples_of_the_sky(scene),
                             choice_among_lights(scene),
+                            lamps_one_by_one(scene),
+                            matte_one_by_one(scene),
                             paths_from_lamps(scene),
                             bounces(scene),
                             environment(scene),
@@ -270,6 +321,11 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
 
 std::vector<Skip> skips_of(const Frame& frame) {
     std::vector<Skip> skips = skips_of(*frame.render_scene);
+    for (Skip& skip : skips) {
+        if (!skip.shortcut || frame.statistics.shortcuts.*skip.shortcut->member) continue;
+        if (skip.state == SkipState::skipped) skip.state = SkipState::put_back;
+        skip.why = skip.shortcut->put_back;
+    }
     skips.push_back(samples_of_finished_pixels(frame.statistics));
     return skips;
 }

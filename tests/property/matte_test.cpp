@@ -92,7 +92,7 @@ TEST_P(Matte, BlocksGiveTheBitsOfSinglePaths) {
         const Scene scene = matte_scene(GetParam(), sampler);
         for (const bool mis : {true, false}) {
             const auto blocks = render(scene, 5, {.mis = mis});
-            const auto singles = render(scene, 5, {.mis = mis, .matte_blocks = false});
+            const auto singles = render(scene, 5, {.mis = mis, .shortcuts = {.matte_blocks = false}});
             EXPECT_EQ(means(blocks->film()), means(singles->film()));
             EXPECT_GT(estimate(blocks->film()).mean, 0.01);
         }

@@ -1,6 +1,5 @@
 #include "ui/panels/panels.h"
 
-#include "core/render/skips.h"
 #include "tests/ui/harness.h"
 #include "tests/ui/temporary_folder.h"
 #include "ui/commands.h"
@@ -431,30 +430,6 @@ TEST_F(PanelTest, TheClampSaysWhatItTakes) {
     run([](ImGuiTestContext* script) { script->ItemClick("//Render/##clamps"); });
     ASSERT_TRUE(draw_until([&] { return is_rendered(4) && statistics().clamp_loss.removed == 0; }));
     EXPECT_NEAR(editor().frame()->image.at(60, 2).x, 0.8f, 1e-6f);
-}
-
-TEST_F(PanelTest, SkipsFollowTheScene) {
-    editor().paused = true;
-    run([](ImGuiTestContext* script) { script->WindowFocus("//Skips"); });
-    const auto panel = [&] {
-        draw_until_rendered(1);
-        const Image window = pixels();
-        const ImRect rect = ImGui::FindWindowByName("Skips")->InnerRect;
-        std::vector<Vec4> part;
-        for (int y = static_cast<int>(rect.Min.y); y < static_cast<int>(rect.Max.y); ++y)
-            for (int x = static_cast<int>(rect.Min.x); x < static_cast<int>(rect.Max.x); ++x)
-                part.push_back(window.at(x, y));
-        return part;
-    };
-    const std::vector<Vec4> with_sky = panel();
-    editor().edit(SetEnvironment{NoEnvironment{}}, "Night");
-    const std::vector<Vec4> without = panel();
-    ASSERT_EQ(with_sky.size(), without.size());
-    EXPECT_NE(with_sky, without);
-    const auto skips = skips_of(*editor().frame()->render_scene);
-    const auto bounces = std::ranges::find(skips, std::string_view("Bounces"), &Skip::name);
-    EXPECT_EQ(bounces->state, SkipState::skipped);
-    EXPECT_EQ(bounces->counter(editor().frame()->statistics), 0u);
 }
 
 }  // namespace
