@@ -270,6 +270,9 @@ struct SurfacesOf<std::variant<Shapes...>> {
     using type = std::tuple<std::vector<SurfaceOf<Shapes>>...>;
 };
 
+constexpr std::size_t kMeshKind = std::variant_size_v<TracedShape> - 1;
+static_assert(std::is_same_v<std::variant_alternative_t<kMeshKind, TracedShape>, std::shared_ptr<const TriangleMesh>>);
+
 SurfacePoint rounded(const Surface& surface) {
     // Rounding to float, and the rounding of everything in double before it. The smallest term keeps the bound positive
     // where the surface passes through the origin.
@@ -309,12 +312,34 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::m
                 entries_.push_back(
                     {static_cast<std::uint32_t>(instance.shape.index()), static_cast<std::uint32_t>(table.size())});
                 table.emplace_back(shape, instance.to_world);
+                has_meshes_ |= instance.shape.index() == kMeshKind;
             },
             instance.shape);
     }
 }
 
 Surfaces::~Surfaces() = default;
+
+/// Null for other shapes.
+const TriangleMesh* Surfaces::mesh_of(const Hit& hit) const {
+    if (!hit.valid() || entries_[hit.object].kind != kMeshKind) return nullptr;
+    return std::get<kMeshKind>(tables_->kinds)[entries_[hit.object].index].mesh.get();
+}
+
+/// The vertices can be asked for only once the triangle is there.
+void Surfaces::prefetch_meshes(std::span<const Hit> hits, std::size_t i) const {
+    constexpr std::size_t kTriangle = 8, kVertices = 4;
+    if (i + kTriangle >= hits.size()) return;
+    if (const TriangleMesh* mesh = mesh_of(hits[i + kTriangle]))
+        __builtin_prefetch(&mesh->triangles[hits[i + kTriangle].primitive]);
+    const TriangleMesh* mesh = mesh_of(hits[i + kVertices]);
+    if (!mesh) return;
+    const glm::uvec3 t = mesh->triangles[hits[i + kVertices].primitive];
+    for (int corner = 0; corner < 3; ++corner) {
+        __builtin_prefetch(&mesh->positions[t[corner]]);
+        if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);
+    }
+}
 
 SurfacePoint Surfaces::point(const Ray& ray, const Hit& hit, bool with_uv) const {
     return rounded(tables_->at(entries_[hit.object], ray, hit, with_uv));

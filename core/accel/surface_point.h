@@ -35,16 +35,23 @@ public:
     /// Derives the surface from a valid `hit` of `ray` with the instances. Nothing here depends on the acceleration
     /// structure. uv may be left at 0 where nobody asks for it.
     SurfacePoint point(const Ray& ray, const Hit& hit, bool with_uv = true) const;
+    /// Before `point` of hits[i], for all in turn: asks the memory for what those some places later will read.
+    void prefetch(std::span<const Hit> hits, std::size_t i) const {
+        if (has_meshes_) prefetch_meshes(hits, i);
+    }
     std::uint64_t memory_bytes() const;
 
 private:
     struct Tables;
+    const TriangleMesh* mesh_of(const Hit& hit) const;
+    void prefetch_meshes(std::span<const Hit> hits, std::size_t i) const;
     /// Where in the tables an instance is.
     struct Entry {
         std::uint32_t kind, index;
     };
     std::vector<Entry> entries_;
     std::unique_ptr<Tables> tables_;
+    bool has_meshes_ = false;
 };
 
 /// The same for a single hit.

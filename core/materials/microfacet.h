@@ -72,10 +72,16 @@ inline bool is_smooth_everywhere(const FloatValue& roughness) {
     return alpha_of(roughness.value) < kSmoothAlpha && (!roughness.texture || roughness.value == 0);
 }
 
+/// `w`, unit but for its rounding to float, with unit length in double: one step of Newton's method for 1 / sqrt(w.w).
+inline Vec3d renormalize(const Vec3& w) {
+    const Vec3d d(w);
+    return d * (1.5 - 0.5 * glm::dot(d, d));
+}
+
 /// The normal that mirrors one of these directions into the other. Along the surface two directions nearly cancel: what
 /// their rounding to float leaves there is taken out by giving them unit length in double.
 inline Vec3 half_vector(const Vec3& wo, const Vec3& wi) {
-    return Vec3(glm::normalize(glm::normalize(Vec3d(wo)) + glm::normalize(Vec3d(wi))));
+    return glm::normalize(Vec3(renormalize(wo) + renormalize(wi)));
 }
 
 /// `w` mirrored by the unit normal m.

@@ -124,6 +124,7 @@ void PathTracer::intersect(PathBatch& batch) const {
 void PathTracer::surface_interactions(PathBatch& batch) const {
     batch.points.resize(batch.rays.size());
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
+        scene_.surfaces().prefetch(batch.hits, i);
         const Hit& hit = batch.hits[i];
         if (!hit.valid()) continue;
         batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, varies(scene_.packed_material(hit.object)));

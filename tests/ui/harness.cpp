@@ -84,7 +84,7 @@ void UiTest::run(std::function<void(ImGuiTestContext*)> script) {
 }
 
 bool UiTest::draw_until(const std::function<bool()>& condition, double seconds) {
-    const double end = now() + seconds;
+    const double end = now() + seconds * RAYUELA_PATIENCE;
     for (int frames = 0; frames < 3 || !condition(); ++frames) {
         if (now() > end) return false;
         draw();
@@ -104,7 +104,7 @@ bool UiTest::draw_until_rendered(int spp) {
 }
 
 bool UiTest::wait_until(ImGuiTestContext* script, const std::function<bool()>& condition, double seconds) {
-    const double end = now() + seconds;
+    const double end = now() + seconds * RAYUELA_PATIENCE;
     for (int frames = 0; frames < 2 || !condition(); ++frames) {
         if (now() > end) return false;
         script->Yield();

@@ -27,7 +27,7 @@ protected:
 
     /// Runs a script to its end, a frame at a time; its failed checks fail the test.
     void run(std::function<void(ImGuiTestContext*)> script);
-    /// Draws until the condition holds; false after so many seconds.
+    /// Draws until the condition holds; false after so many seconds (more under a sanitizer).
     bool draw_until(const std::function<bool()>& condition, double seconds = 20);
     /// Draws until a full-resolution image of the current scene with at least `spp` samples is on screen.
     bool draw_until_rendered(int spp = 1);
