@@ -71,7 +71,7 @@ void add_sphere(Scene& scene, const Vec3& center, MaterialId wall) {
 Outcome rooms_are_dark(const std::vector<Room>& rooms, const Vec3& center, std::uint64_t rays) {
     const Material walls[] = {kWhite, Metal{{Color(1), nullptr}, {0.3f, nullptr, 0}},
                               Metal{{Color(1), nullptr}, {0, nullptr, 0}}};
-    constexpr std::uint64_t kRaysPerPath = 76;
+    constexpr std::uint64_t kRaysPerPath = 60;
     Outcome total;
     for (const Room& room : rooms) {
         for (const Material& wall : walls) {
