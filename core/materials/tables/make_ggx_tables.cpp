@@ -4,6 +4,7 @@
 #include "core/materials/ggx_tables.h"
 
 #include <cstdio>
+#include <fstream>
 #include <string>
 
 namespace rayuela {
@@ -100,13 +101,11 @@ std::string text(const T& values) {
 }  // namespace
 }  // namespace rayuela
 
-int main(int, char** arguments) {
+int main(int count, char** arguments) {
     using namespace rayuela;
+    if (count != 2) return 2;
     const GgxTables tables = make_tables();
-    std::FILE* const file = std::fopen(arguments[1], "w");
-    if (!file) return 1;
-    const std::string written =
-        text(tables.total) + text(tables.ratio) + text(tables.average_total) + text(tables.average_grazing);
-    const bool complete = std::fputs(written.c_str(), file) >= 0;
-    return std::fclose(file) == 0 && complete ? 0 : 1;
+    std::ofstream file(arguments[1]);
+    file << text(tables.total) << text(tables.ratio) << text(tables.average_total) << text(tables.average_grazing);
+    return file.flush() ? 0 : 1;
 }
