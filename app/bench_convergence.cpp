@@ -71,6 +71,7 @@ ConvergenceRun run_seed(const VariantScene& variant, std::uint32_t seed, const C
     scene->render.seed = seed;
     scene->render.max_seconds = 0;
     ProgressiveRenderer renderer(false, plan.threads, variant.options);
+    renderer.set_sampling(variant.sampling);
     ConvergenceRun run;
     BuildControl control;
     const Stopwatch building;

@@ -36,22 +36,26 @@ bool parse(std::string_view text, std::optional<T>& value) {
     return parse(text, value.emplace());
 }
 
-/// Calls visit(name, value) for everything that can be set: the scene's render settings and parts of the algorithm.
+/// Calls visit(name, value) for everything that can be set: the scene's render settings, parts of the algorithm, and how a
+/// session samples.
 template <typename Visitor>
-void visit_settings(RenderSettings& render, PathTracerOptions& options, const Visitor& visit) {
+void visit_settings(RenderSettings& render, VariantScene& variant, const Visitor& visit) {
+    PathTracerOptions& options = variant.options;
     visit_render_fields(render, [&](auto& value, const SettingField& field) { visit(field.key, value); });
     visit("light_sampling", options.light_sampling);
     visit("mis", options.mis);
     visit("russian_roulette", options.russian_roulette);
     for (const ShortcutField& shortcut : kShortcuts) visit(shortcut.key, options.shortcuts.*shortcut.member);
+    visit("target_error", variant.sampling.target_error);
+    visit("clamp", variant.sampling.clamp);
 }
 
-Result<void> apply_setting(const std::string& setting, RenderSettings& render, PathTracerOptions& options) {
+Result<void> apply_setting(const std::string& setting, RenderSettings& render, VariantScene& variant) {
     const std::size_t equals = std::min(setting.find('='), setting.size());
     const std::string_view name = std::string_view(setting).substr(0, equals);
     const std::string_view text = std::string_view(setting).substr(std::min(equals + 1, setting.size()));
     bool known = false, understood = true;
-    visit_settings(render, options, [&](std::string_view key, auto& value) {
+    visit_settings(render, variant, [&](std::string_view key, auto& value) {
         if (key != name) return;
         known = true;
         understood = parse(text, value);
@@ -60,6 +64,8 @@ Result<void> apply_setting(const std::string& setting, RenderSettings& render, P
         return fail("", setting,
                     fmt::format("no setting \"{}\"; there are {}", name, fmt::join(setting_names(), ", ")));
     }
+    const auto& [target_error, clamp] = variant.sampling;
+    understood = understood && target_error >= 0 && target_error <= double{kMaxTargetError} && clamp >= 0;
     if (!understood) return fail("", setting, fmt::format("{} cannot be \"{}\"", name, text));
     return {};
 }
@@ -78,9 +84,9 @@ std::vector<std::string> split(std::string_view list) {
 
 std::vector<std::string> setting_names() {
     RenderSettings render;
-    PathTracerOptions options;
+    VariantScene variant;
     std::vector<std::string> names;
-    visit_settings(render, options, [&](std::string_view name, const auto&) { names.emplace_back(name); });
+    visit_settings(render, variant, [&](std::string_view name, const auto&) { names.emplace_back(name); });
     return names;
 }
 
@@ -105,7 +111,7 @@ Result<VariantScene> apply_settings(const Scene& scene, const std::vector<std::s
     VariantScene result;
     RenderSettings render = scene.render;
     for (const std::string& setting : settings) {
-        if (auto done = apply_setting(setting, render, result.options); !done) return tl::unexpected(done.error());
+        if (auto done = apply_setting(setting, render, result); !done) return tl::unexpected(done.error());
     }
     auto applied = apply(scene, SetRenderSettings{render});
     if (!applied) return tl::unexpected(applied.error());

@@ -2,6 +2,7 @@
 
 #include "core/math/result.h"
 #include "core/render/path_tracer.h"
+#include "core/render/sampling_options.h"
 #include "core/scene/scene.h"
 
 #include <string>
@@ -23,6 +24,7 @@ Result<std::vector<BenchVariant>> make_variants(const std::vector<std::string>& 
 struct VariantScene {
     Scene scene;
     PathTracerOptions options;
+    SamplingOptions sampling;
 };
 /// Problems: a name that is no setting, a value that it cannot have.
 Result<VariantScene> apply_settings(const Scene& scene, const std::vector<std::string>& settings);

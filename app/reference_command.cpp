@@ -31,6 +31,7 @@ std::vector<std::string> settings_of(const ReferenceOptions& options, std::uint3
 
 Image render(const VariantScene& variant, int threads, const std::string& name) {
     ProgressiveRenderer renderer(false, threads, variant.options);
+    renderer.set_sampling(variant.sampling);
     BuildControl control;
     renderer.take(std::make_shared<const Scene>(variant.scene), control);
     const std::atomic<bool> cancelled{false};

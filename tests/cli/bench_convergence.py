@@ -62,6 +62,16 @@ def test_figures_agree_with_rendering_and_measuring_by_hand():
     xml.etree.ElementTree.parse("c.svg")
 
 
+def test_adaptive_beside_fixed():
+    run("bench", "convergence", "ball.scene.json", "--references", ".", "--seeds", 2, "--spp", "32,128", "--json", "d.json",
+        "--compare", "target_error=0,0.9")
+    variants = json.loads(pathlib.Path("d.json").read_text())[0]["variants"]
+    errors = {name: [c["relmse"]["value"] for c in v["checkpoints"]] for name, v in variants.items()}
+    fixed, adaptive = errors["target_error=0"], errors["target_error=0.9"]
+    assert adaptive[0] == fixed[0] > fixed[1], "nothing stops before 32 samples"
+    assert adaptive[1] == adaptive[0], "so rough a target is reached by then"
+
+
 def test_brute_force_agrees():
     run("reference", "ball.scene.json", "-o", "x.pfm,y.pfm", "--spp", 64, "--brute-force")
     brute, plain = read_pfm("x.pfm"), read_pfm("ball_a.pfm")
@@ -75,6 +85,7 @@ def test_mistakes_are_named():
         (bench + ("--reference", "ball_a.pfm,ball_a.pfm", "--set", "samplr=sobol"), 1, "no setting \"samplr\""),
         (bench + ("--references", ".", "--set", "sampler=sobel"), 1, "sampler cannot be \"sobel\""),
         (bench + ("--references", ".", "--set", "kd_leaf_size=0"), 1, "kd_leaf_size"),
+        (bench + ("--references", ".", "--set", "target_error=nan"), 1, "target_error cannot be \"nan\""),
         (bench + ("--references", ".", "--compare", "sampler"), 1, "NAME=VALUE"),
         (bench + ("--references", ".", "--seeds", "0"), 2, "--seeds"),
         (bench + ("--references", ".", "--spp", "0"), 2, "--spp"),
