@@ -34,31 +34,35 @@ WITHOUT = [
 
 root = pathlib.Path(__file__).resolve().parents[2]
 folder = root / "build" / "stripped"
+source = folder / "whole" / "source"
+
+
+def copy_sources():
+    for part in ("app", "assets", "cmake", "core", "shaders", "ui"):
+        shutil.copytree(root / part, source / part, dirs_exist_ok=True)
+    shutil.copy2(root / "CMakeLists.txt", source)
+    # Not downloaded again.
+    deps = root / "build" / "deps"
+    if deps.exists() and not (source / "build" / "deps").exists():
+        (source / "build").mkdir()
+        (source / "build" / "deps").symlink_to(deps)
 
 
 def build(name, replacements):
-    source, binary = folder / name / "source", folder / name / "build"
-    # Copied over what is there, so that only what differs is compiled again.
-    for part in ("app", "assets", "cmake", "core", "shaders", "ui", "CMakeLists.txt"):
-        if (root / part).is_dir():
-            shutil.copytree(root / part, source / part, dirs_exist_ok=True)
-        else:
-            shutil.copy2(root / part, source / part)
+    """The program with each old replaced by the new if `replacements`, else as it is. Copies it to `name`."""
+    texts = {file: (root / file).read_text() for file, _, _ in WITHOUT}
     for file, old, new in replacements:
-        text = (source / file).read_text()
-        assert text.count(old) == 1, f"{file}: '{old}' is there {text.count(old)} times"
-        (source / file).write_text(text.replace(old, new))
-    deps = root / "build" / "deps"
-    if deps.exists() and not (source / "build" / "deps").exists():
-        (source / "build").mkdir(exist_ok=True)
-        (source / "build" / "deps").symlink_to(deps)
+        assert texts[file].count(old) == 1, f"{file}: '{old}' is there {texts[file].count(old)} times"
+        texts[file] = texts[file].replace(old, new)
+    for file, text in texts.items():
+        (source / file).write_text(text)
     with open(folder / f"{name}.log", "w") as log:
-        for command in (["cmake", "-S", source, "-B", binary, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+        for command in (["cmake", "-S", source, "-B", folder / "whole" / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                          "-DCMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG -Wno-error", "-DBUILD_TESTING=OFF"],
-                        ["cmake", "--build", binary, "--target", "rayuela"]):
+                        ["cmake", "--build", folder / "whole" / "build", "--target", "rayuela"]):
             if subprocess.run(command, stdout=log, stderr=log).returncode:
                 sys.exit(f"the build failed: {log.name}")
-    return binary / "rayuela"
+    return shutil.copy2(folder / "whole" / "build" / "rayuela", folder / name)
 
 
 def seconds(program, image):
@@ -70,10 +74,11 @@ def seconds(program, image):
 
 def main():
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 21
-    folder.mkdir(parents=True, exist_ok=True)
-    whole, stripped = build("whole", []), build("without", WITHOUT)
-    images = folder / "whole.pfm", folder / "without.pfm"
-    ratios = [seconds(whole, images[0]) / seconds(stripped, images[1]) for _ in range(rounds)]
+    source.mkdir(parents=True, exist_ok=True)
+    copy_sources()
+    with_all, without = build("with_all", []), build("without", WITHOUT)
+    images = folder / "with_all.pfm", folder / "without.pfm"
+    ratios = [seconds(with_all, images[0]) / seconds(without, images[1]) for _ in range(rounds)]
     assert images[0].read_bytes() == images[1].read_bytes(), "the images differ"
     generator = random.Random(60)
     medians = sorted(statistics.median(generator.choices(ratios, k=rounds)) for _ in range(2000))
