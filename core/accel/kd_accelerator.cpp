@@ -67,7 +67,7 @@ bool KdAccelerator::build_objects(BuildControl& control) {
     if (!tree) return false;
     tree_ = std::move(*tree);
     leaves_ = make_object_leaves(objects_, tree_);
-    if (few && tree_.nodes.size() == 1 && !tree_.references.empty()) bounds_ = std::move(bounds);
+    if (settings_.few_objects && tree_.nodes.size() == 1 && !tree_.references.empty()) bounds_ = std::move(bounds);
     const std::unordered_set<const MeshTree*> in_use(mesh_of_object_.begin(), mesh_of_object_.end());
     for (const auto& [mesh, mesh_tree] : mesh_trees_) {
         if (in_use.contains(mesh_tree.get())) {
