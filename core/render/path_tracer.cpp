@@ -71,13 +71,19 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
 }
 
 bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
+    const bool materials_vary = scene_.features().textures || !options_.shortcuts.ready_materials;
+    return materials_vary ? trace_as<true>(batch, cancelled, record) : trace_as<false>(batch, cancelled, record);
+}
+
+template <bool kVaries>
+bool PathTracer::trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
     camera_rays(batch);
     for (int bounce = 0; !batch.rays.empty(); ++bounce) {
         if (cancelled) return false;
         intersect(batch);
-        surface_interactions(batch);
+        surface_interactions<kVaries>(batch);
         if (record) record_arrivals(batch, bounce, *record);
-        shade(batch, bounce);
+        shade<kVaries>(batch, bounce);
         add_unblocked_light(batch);
         if (record) record_light(batch, bounce, *record);
     }
@@ -121,27 +127,31 @@ void PathTracer::intersect(PathBatch& batch) const {
     batch.counts.rays += batch.rays.size();
 }
 
+template <bool kVaries>
 void PathTracer::surface_interactions(PathBatch& batch) const {
     batch.points.resize(batch.rays.size());
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
         scene_.surfaces().prefetch(batch.hits, i);
         const Hit& hit = batch.hits[i];
         if (!hit.valid()) continue;
-        batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, varies(scene_.packed_material(hit.object)));
+        batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, varies<kVaries>(scene_.packed_material(hit.object)));
     }
 }
 
 /// Whether the Bsdf has to be worked out at the hit.
+template <bool kVaries>
 bool PathTracer::varies(const PackedMaterial& material) const {
-    return material.textured || !options_.shortcuts.ready_materials;
+    return kVaries && (material.textured || !options_.shortcuts.ready_materials);
 }
 
 /// Of a surface to be shaded in a MatteBlock.
+template <bool kVaries>
 std::optional<Color> PathTracer::matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const {
     if (!material.matte || !options_.shortcuts.matte_blocks) return std::nullopt;
-    return varies(material) ? std::get<Diffuse>(material.material).bsdf(point.uv).albedo : material.matte;
+    return varies<kVaries>(material) ? std::get<Diffuse>(material.material).bsdf(point.uv).albedo : material.matte;
 }
 
+template <bool kVaries>
 void PathTracer::shade(PathBatch& batch, int bounce) const {
     const bool dark = options_.shortcuts.no_light && !scene_.features().any_light();
     const bool last = bounce >= scene_.scene().render.max_bounces || dark;
@@ -162,13 +172,13 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
-        batch.counts.textured_hits += varies(material);
-        if (const auto albedo = matte_albedo(material, batch.points[i]); albedo && !aims(state, bounce)) {
+        batch.counts.textured_hits += varies<kVaries>(material);
+        if (const auto albedo = matte_albedo<kVaries>(material, batch.points[i]); albedo && !aims(state, bounce)) {
             if (!last) add_matte(batch, i, *albedo, bounce);
             continue;
         }
         const Interaction& at =
-            batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies(material));
+            batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies<kVaries>(material));
         if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);
         batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);

@@ -52,9 +52,14 @@ private:
         Vec2 direction;
     };
 
+    // kVaries: materials may have to be worked out at their hits; the other form of a stage does not look.
+    template <bool kVaries>
+    bool trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const;
     void camera_rays(PathBatch& batch) const;
     void intersect(PathBatch& batch) const;
+    template <bool kVaries>
     void surface_interactions(PathBatch& batch) const;
+    template <bool kVaries>
     void shade(PathBatch& batch, int bounce) const;
     void add_unblocked_light(PathBatch& batch) const;
     void add_parts(PathBatch& batch) const;
@@ -70,7 +75,9 @@ private:
                int bounce) const;
     void scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
                  const ScatterNumbers& numbers, int bounce) const;
+    template <bool kVaries>
     bool varies(const PackedMaterial& material) const;
+    template <bool kVaries>
     std::optional<Color> matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const;
     void add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const;
     void shade_matte(PathBatch& batch, int bounce) const;

@@ -20,7 +20,9 @@ TRACER, MATTE, KERNELS = "core/render/path_tracer.cpp", "core/render/path_tracer
 WITHOUT = [
     (TRACER, "const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;",
      "constexpr bool lens_extends = false;"),
-    (TRACER, "return material.textured || !options_.shortcuts.ready_materials;",
+    (TRACER, "const bool materials_vary = scene_.features().textures || !options_.shortcuts.ready_materials;",
+     "constexpr bool materials_vary = false;"),
+    (TRACER, "return kVaries && (material.textured || !options_.shortcuts.ready_materials);",
      "static_cast<void>(material);\n    return false;"),
     (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) continue;", "if (true) continue;"),
     (TRACER, "return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;",
