@@ -134,7 +134,8 @@ void PathTracer::surface_interactions(PathBatch& batch) const {
         scene_.surfaces().prefetch(batch.hits, i);
         const Hit& hit = batch.hits[i];
         if (!hit.valid()) continue;
-        batch.points[i] = scene_.surfaces().point(batch.rays[i], hit, varies<kVaries>(scene_.packed_material(hit.object)));
+        batch.points[i] =
+            scene_.surfaces().point(batch.rays[i], hit, varies<kVaries>(scene_.packed_material(hit.object)));
     }
 }
 
