@@ -48,8 +48,8 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             origin_[axis][lane] = block.origin[axis][i];
             inverse_[axis][lane] = block.inverse[axis][i];
+            pad_[axis][lane] = block.pad[i] * std::fabs(block.inverse[axis][i]);
         }
-        pad_[lane] = block.pad[i];
         begin_[lane] = block.begin[i];
         end_[lane] = block.end[i];
         limit_[lane] = block.limit[i];
@@ -73,10 +73,8 @@ public:
         const Words axis = hn::And(pair.high, hn::Set(dw, KdNode::kAxisMask));
         const AxisChoice choice(axis);
         const auto is_inner = hn::Ne(axis, hn::Set(dw, KdNode::kLeaf));
-        const Floats inverse = choice.of(inverse_);
-        const Floats middle = hn::Mul(hn::Sub(plane, choice.of(origin_)), inverse);
-        const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));
-        const Floats enter = hn::Sub(middle, pad), leave = hn::Add(middle, pad);
+        const Floats inverse = choice.of(inverse_), pad = choice.of(pad_), distance = hn::Sub(plane, choice.of(origin_));
+        const Floats enter = hn::MulSub(distance, inverse, pad), leave = hn::MulAdd(distance, inverse, pad);
         const Floats begin = hn::Load(d, begin_), end = hn::Load(d, end_);
 
         const Words backward = hn::ShiftRight<31>(hn::BitCast(dw, inverse));
@@ -129,7 +127,7 @@ public:
         FloatMask todo = mask_of(lanes);
         Words node = hn::Load(dw, node_), height = hn::Load(dw, height_);
         Floats begin = hn::Load(d, begin_), end = hn::Load(d, end_);
-        const Floats limit = hn::Load(d, limit_), pad = hn::Load(d, pad_);
+        const Floats limit = hn::Load(d, limit_);
         while (true) {
             const FloatMask empty = hn::And(todo, hn::RebindMask(d, hn::Eq(height, bottom)));
             active_ &= ~bits_of(d, empty);
@@ -139,9 +137,8 @@ public:
             height = hn::IfThenElse(popped, hn::Sub(height, hn::Set(dw, kLanes)), height);
             const WordPairs entry = gather_pairs(stack_, height);
             // The far child begins where the near one ended, less both pads and their rounding.
-            const Floats inverse = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(inverse_);
-            const Floats overlap = hn::Mul(hn::Mul(pad, hn::Abs(inverse)), hn::Set(d, 2.25f));
-            begin = hn::IfThenElse(todo, hn::Sub(end, overlap), begin);
+            const Floats pad = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(pad_);
+            begin = hn::IfThenElse(todo, hn::NegMulAdd(pad, hn::Set(d, 2.25f), end), begin);
             end = hn::IfThenElse(todo, hn::BitCast(d, entry.high), end);
             node = hn::IfThenElse(popped, hn::ShiftRight<2>(entry.low), node);
             todo = hn::And(todo, hn::Gt(begin, limit));
@@ -154,7 +151,8 @@ public:
 
 private:
     alignas(64) LaneAxes origin_{}, inverse_{};
-    alignas(64) float pad_[kLanes] = {}, begin_[kLanes] = {}, end_[kLanes] = {}, limit_[kLanes] = {};
+    alignas(64) LaneAxes pad_{};  ///< RayBlock::pad along the ray, where it passes planes across each axis.
+    alignas(64) float begin_[kLanes] = {}, end_[kLanes] = {}, limit_[kLanes] = {};
     alignas(64) std::uint32_t node_[kLanes] = {}, height_[kLanes] = {};
     alignas(64) std::uint32_t word_[kLanes] = {}, data_[kLanes] = {};  ///< Of the nodes at the last step.
     alignas(64) std::uint64_t stack_[(kKdMaxDepth + 1) * kLanes];
