@@ -50,14 +50,14 @@ struct WorldRays {
     }
 };
 
-/// Rays of a batch against every object of a scene that has few: no tree, no order, all lanes full. Rays of one dominant axis
-/// go together, so that a triangle is turned once for 16 of them.
+/// Rays of a batch against every object that stands apart from a tree: no order, all lanes full. Rays of one dominant axis go
+/// together, so that a triangle is turned once for 16 of them.
 template <Query kQuery>
 class FewObjects {
 public:
     FewObjects(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits, std::vector<MeshCandidate>& meshes)
-        : scene_(scene), leaf_(scene.leaves->leaves[0]), rays_(rays), hits_(hits), meshes_(meshes) {
-        const Bounds3& bounds = scene.tree->bounds;
+        : scene_(scene), leaf_(scene.leaves->apart), rays_(rays), hits_(hits), meshes_(meshes) {
+        const Bounds3& bounds = scene.all_bounds;
         reach_ = max_component(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
     }
 

@@ -1,5 +1,6 @@
 #include "core/accel/kd_accelerator.h"
 
+#include "core/accel/large_objects.h"
 #include "core/accel/parallel.h"
 
 #include <algorithm>
@@ -63,11 +64,21 @@ bool KdAccelerator::build_objects(BuildControl& control) {
     }
     const bool few = settings_.few_objects && tests_few_objects(settings_, objects_.size());
     const int leaf_size = few ? std::max(settings_.leaf_size, static_cast<int>(kFewObjects)) : settings_.leaf_size;
-    auto tree = build_kd_tree({.bounds = bounds, .split = settings_.split, .leaf_size = leaf_size}, control);
+    std::vector<std::uint32_t> large;
+    if (settings_.few_objects && !few && settings_.split == KdSplit::sah) large = find_large_objects(objects_, bounds);
+    std::vector<Bounds3> in_tree = bounds;
+    for (const std::uint32_t i : large) in_tree[i] = {};
+    auto tree = build_kd_tree({.bounds = in_tree, .split = settings_.split, .leaf_size = leaf_size}, control);
     if (!tree) return false;
     tree_ = std::move(*tree);
-    leaves_ = make_object_leaves(objects_, tree_);
-    if (settings_.few_objects && tree_.nodes.size() == 1 && !tree_.references.empty()) bounds_ = std::move(bounds);
+    large_objects_ = large.size();
+    all_apart_ = settings_.few_objects && tree_.nodes.size() == 1;
+    std::vector<std::uint32_t>& apart = large;
+    if (all_apart_) apart.insert(apart.end(), tree_.references.begin(), tree_.references.end());
+    leaves_ = make_object_leaves(objects_, all_apart_ ? nullptr : &tree_, apart);
+    all_bounds_ = tree_.bounds;
+    for (const std::uint32_t i : apart) all_bounds_.extend(bounds[i]);
+    if (!apart.empty()) bounds_ = std::move(bounds);
     const std::unordered_set<const MeshTree*> in_use(mesh_of_object_.begin(), mesh_of_object_.end());
     for (const auto& [mesh, mesh_tree] : mesh_trees_) {
         if (in_use.contains(mesh_tree.get())) {

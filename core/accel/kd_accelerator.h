@@ -29,19 +29,23 @@ public:
     AccelStats stats() const override { return stats_; }
     const AccelSettings& settings() const override { return settings_; }
     std::span<const GeometryInstance> instances() const override { return instances_; }
-    Bounds3 bounds() const override { return tree_.bounds; }
+    Bounds3 bounds() const override { return all_bounds_; }
 
     /// The tree of the mesh of an object; null for other shapes. For tests and statistics.
     const MeshTree* mesh_tree(std::uint32_t object) const { return mesh_of_object_[object]; }
 
     /// False where all objects are tested in turn.
     bool has_object_tree() const { return tree_.nodes.size() > 1; }
+    /// Objects tested in turn beside a tree over all others.
+    std::size_t large_objects() const { return large_objects_; }
 
 private:
     KdAccelerator() = default;
     bool build_meshes(const KdAccelerator* previous, BuildControl& control);
     bool build_objects(BuildControl& control);
-    KdScene scene() const { return {objects_, mesh_of_object_, planes_, &tree_, &leaves_, bounds_}; }
+    KdScene scene() const {
+        return {objects_, mesh_of_object_, planes_, all_apart_ ? nullptr : &tree_, &leaves_, bounds_, all_bounds_};
+    }
 
     std::vector<GeometryInstance> instances_;
     AccelSettings settings_;
@@ -52,7 +56,10 @@ private:
     std::vector<const MeshTree*> mesh_of_object_;
     KdTree tree_;
     ObjectLeaves leaves_;
+    bool all_apart_ = false;       ///< No tree is needed.
+    std::size_t large_objects_ = 0;
     std::vector<Bounds3> bounds_;  ///< As KdScene::bounds.
+    Bounds3 all_bounds_;
     AccelStats stats_;
 };
 

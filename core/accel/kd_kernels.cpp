@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 // The kernels need no more than these.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -60,6 +61,25 @@ void trace_candidates(const KdScene& scene, std::span<const Ray> rays, std::span
     }
 }
 
+/// The object that is the whole scene but for planes, where that is a mesh.
+std::optional<std::uint32_t> only_mesh(const KdScene& scene) {
+    const ObjectLeaf& apart = scene.leaves->apart;
+    if (scene.tree || apart.triangles > 0 || apart.spheres > 0 || apart.others != 1) return std::nullopt;
+    const std::uint32_t object = scene.leaves->others[apart.first_other];
+    return scene.mesh_trees[object] ? std::optional(object) : std::nullopt;
+}
+
+/// Those of all rays of the block that have no answer yet.
+template <Query kQuery>
+std::span<const std::uint32_t> open_rays(std::span<const Hit> hits, Workspace& work) {
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < hits.size(); ++i) {
+        work.ids[count] = i;
+        count += kQuery == Query::any && hits[i].valid() ? 0 : 1;
+    }
+    return {work.ids, count};
+}
+
 template <Query kQuery>
 void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits, Workspace& work) {
     std::fill(hits.begin(), hits.end(), Hit());
@@ -68,27 +88,20 @@ void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit>
             if (can_hit(rays[i])) intersect_object(scene.objects, index, rays[i], hits[i]);
         }
     }
-    std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < rays.size(); ++i) {
-        work.ids[count] = i;
-        count += kQuery == Query::any && hits[i].valid() ? 0 : 1;
+    if (const auto mesh = only_mesh(scene)) {
+        trace_mesh<kQuery>(scene, *mesh, open_rays<kQuery>(hits, work), rays, hits, work.block);
+        return;
     }
-    const std::span<const std::uint32_t> open(work.ids, count);
-    const std::vector<std::uint32_t>& references = scene.tree->references;
-    if (references.size() == 1 && scene.mesh_trees[references[0]]) {
-        trace_mesh<kQuery>(scene, references[0], open, rays, hits, work.block);
-    } else if (!scene.bounds.empty()) {
-        work.candidates.clear();
-        FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open);
-        trace_candidates<kQuery>(scene, rays, hits, work);
-    } else if (!references.empty()) {
-        RayBlockWriter(rays, hits, nullptr, scene.tree->bounds).write(open, work.block);
-        work.candidates.clear();
+    work.candidates.clear();
+    if (!scene.leaves->apart.empty())
+        FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open_rays<kQuery>(hits, work));
+    if (scene.tree) {
+        RayBlockWriter(rays, hits, nullptr, scene.tree->bounds).write(open_rays<kQuery>(hits, work), work.block);
         ObjectClient<kQuery> client(scene, work.block, rays, hits, work.candidates);
         trace_packets(*scene.tree, work.block, client);
         trace_lanes(*scene.tree, work.block, client);
-        trace_candidates<kQuery>(scene, rays, hits, work);
     }
+    trace_candidates<kQuery>(scene, rays, hits, work);
 }
 
 void intersect_batch(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits) {

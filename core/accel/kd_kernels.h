@@ -13,9 +13,10 @@ struct KdScene {
     std::span<const TracedObject> objects;
     std::span<const MeshTree* const> mesh_trees;  ///< One an object; null for all but meshes.
     std::span<const std::uint32_t> planes;        ///< Objects that no tree can hold.
-    const KdTree* tree = nullptr;                 ///< Over all other objects.
-    const ObjectLeaves* leaves = nullptr;         ///< Of that tree.
-    std::span<const Bounds3> bounds;              ///< One an object, where the tree is one leaf that holds any.
+    const KdTree* tree = nullptr;  ///< Over all other objects but those of leaves->apart; null where there are none.
+    const ObjectLeaves* leaves = nullptr;
+    std::span<const Bounds3> bounds;  ///< One an object, where any stands apart.
+    Bounds3 all_bounds;               ///< Of all objects but planes.
 };
 
 /// Accelerator::intersect and Accelerator::occluded by the widest instructions of this machine.

@@ -84,13 +84,15 @@ std::uint64_t ObjectLeaves::memory_bytes() const {
            bytes(others) + bytes(exact_spheres);
 }
 
-ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdTree& tree) {
+ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdTree* tree,
+                                std::span<const std::uint32_t> apart) {
     ObjectLeaves result;
-    result.leaves.resize(tree.references.size());
     LeafWriter writer(objects, result);
-    for (const KdNode& node : tree.nodes) {
+    result.apart = writer.write(apart);
+    if (tree) result.leaves.resize(tree->references.size());
+    for (const KdNode& node : tree ? std::span(tree->nodes) : std::span<const KdNode>()) {
         if (!node.is_leaf() || node.count() == 0) continue;
-        result.leaves[node.first()] = writer.write(std::span(tree.references).subspan(node.first(), node.count()));
+        result.leaves[node.first()] = writer.write(std::span(tree->references).subspan(node.first(), node.count()));
     }
     result.triangle_runs.resize(result.triangle_runs.size() + kRunPadding);
     result.sphere_runs.resize(result.sphere_runs.size() + kRunPadding);

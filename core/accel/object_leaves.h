@@ -13,6 +13,8 @@ struct ObjectLeaf {
     std::uint32_t first_triangle = 0, triangles = 0;  ///< Quads are two.
     std::uint32_t first_sphere = 0, spheres = 0;
     std::uint32_t first_other = 0, others = 0;
+
+    bool empty() const { return triangles == 0 && spheres == 0 && others == 0; }
 };
 
 /// A triangle of a leaf: an object of its own or half of a quad.
@@ -21,8 +23,9 @@ struct ObjectTriangle {
     enum Kind : std::uint32_t { whole, first_half, second_half } kind;
 };
 
-/// What the leaves of the tree over the objects hold.
+/// What the leaves of the tree over the objects hold, and what stands apart from it, to be tested with every ray.
 struct ObjectLeaves {
+    ObjectLeaf apart;                  ///< Begins all that follows but `leaves`.
     std::vector<ObjectLeaf> leaves;    ///< One a reference of the tree; that of a leaf stands at its first().
     std::vector<float> triangle_runs;  ///< See MeshTree::leaf_data.
     std::vector<ObjectTriangle> triangles;
@@ -34,6 +37,8 @@ struct ObjectLeaves {
     std::uint64_t memory_bytes() const;
 };
 
-ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdTree& tree);
+/// `tree` may be null.
+ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdTree* tree,
+                                std::span<const std::uint32_t> apart);
 
 }  // namespace rayuela
