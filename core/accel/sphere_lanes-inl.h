@@ -30,6 +30,7 @@ public:
             direction_[axis][slot] = n[axis];
         }
         pad_[slot] = block_.pad[i];
+        previous_[slot] = kNone;
         length_[slot] = length;
         begin_[slot] = static_cast<float>(length * ray.t_min) * (1 - 4 * kUnitRoundoff);
         set_end(slot, t_max);
@@ -45,8 +46,12 @@ public:
         const auto set = [&](const float* values) HWY_ATTR { return hn::Set(d, values[slot]); };
         const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n + i); };
         const FloatMask hit = may_hit(rays(set), FilterSpheres{load(0), load(1), load(2), load(3)});
-        for (LaneBits bits = bits_of(d, hn::And(hit, hn::FirstN(d, n - i))); bits != 0; bits &= bits - 1)
-            candidates_.add(ray_of_slot_[slot], names[i + first_lane(bits)]);
+        for (LaneBits bits = bits_of(d, hn::And(hit, hn::FirstN(d, n - i))); bits != 0; bits &= bits - 1) {
+            const std::uint32_t name = names[i + first_lane(bits)];
+            // A sphere lies in many leaves of a ray.
+            if (name != previous_[slot]) candidates_.add(ray_of_slot_[slot], name);
+            previous_[slot] = name;
+        }
         return candidates_.full();
     }
     /// Sphere i of the n of a leaf for the rays in slots 0 to kLanes that are in `here`. True as above.
@@ -77,6 +82,7 @@ private:
     std::span<const Ray> rays_;
     const SphereD* spheres_;
     std::uint32_t ray_of_slot_[kSlots];  ///< In the batch.
+    std::uint32_t previous_[kSlots];     ///< The sphere added last.
     alignas(64) float origin_[3][kSlots] = {}, direction_[3][kSlots] = {};
     alignas(64) float pad_[kSlots] = {}, begin_[kSlots] = {}, end_[kSlots] = {};
     double length_[kSlots] = {};  ///< Of a direction of large floats: beyond the range of float.
