@@ -19,7 +19,7 @@ struct AccelSettings {
     AcceleratorKind kind = AcceleratorKind::kd;
     int leaf_size = 16;  ///< Primitives a leaf should hold at most, in [kMinLeafSize, kMaxLeafSize].
     KdSplit split = KdSplit::sah;
-    bool few_objects = true;  ///< Few objects are tested in turn, without a tree. Not part of a scene.
+    bool few_objects = true;  ///< Few objects and large ones are tested in turn, without a tree. Not part of a scene.
 
     bool operator==(const AccelSettings&) const = default;
 };

@@ -62,23 +62,8 @@ bool KdAccelerator::build_objects(BuildControl& control) {
         if (objects_[i].is_plane()) planes_.push_back(i);
         if (!mesh) ++stats_.primitives;
     }
-    const bool few = settings_.few_objects && tests_few_objects(settings_, objects_.size());
-    const int leaf_size = few ? std::max(settings_.leaf_size, static_cast<int>(kFewObjects)) : settings_.leaf_size;
-    std::vector<std::uint32_t> large;
-    if (settings_.few_objects && !few && settings_.split == KdSplit::sah) large = find_large_objects(objects_, bounds);
-    std::vector<Bounds3> in_tree = bounds;
-    for (const std::uint32_t i : large) in_tree[i] = {};
-    auto tree = build_kd_tree({.bounds = in_tree, .split = settings_.split, .leaf_size = leaf_size}, control);
-    if (!tree) return false;
-    tree_ = std::move(*tree);
-    large_objects_ = large.size();
-    all_apart_ = settings_.few_objects && tree_.nodes.size() == 1;
-    std::vector<std::uint32_t>& apart = large;
-    if (all_apart_) apart.insert(apart.end(), tree_.references.begin(), tree_.references.end());
-    leaves_ = make_object_leaves(objects_, all_apart_ ? nullptr : &tree_, apart);
-    all_bounds_ = tree_.bounds;
-    for (const std::uint32_t i : apart) all_bounds_.extend(bounds[i]);
-    if (!apart.empty()) bounds_ = std::move(bounds);
+    if (!build_object_tree(bounds, control)) return false;
+    if (!leaves_.apart.empty()) bounds_ = std::move(bounds);
     const std::unordered_set<const MeshTree*> in_use(mesh_of_object_.begin(), mesh_of_object_.end());
     for (const auto& [mesh, mesh_tree] : mesh_trees_) {
         if (in_use.contains(mesh_tree.get())) {
@@ -89,6 +74,29 @@ bool KdAccelerator::build_objects(BuildControl& control) {
     }
     stats_ += tree_.stats();
     stats_.memory_bytes += objects_.size() * sizeof(TracedObject) + leaves_.memory_bytes();
+    return true;
+}
+
+/// The tree over the objects with these bounds, and what stands apart from it.
+bool KdAccelerator::build_object_tree(std::span<const Bounds3> bounds, BuildControl& control) {
+    const bool few = tests_few_objects(settings_, objects_.size());
+    std::vector<std::uint32_t> apart;
+    if (settings_.split == KdSplit::sah && !few) apart = find_large_objects(objects_, bounds);
+    large_objects_ = apart.size();
+    if (!settings_.few_objects) apart.clear();
+
+    std::vector<Bounds3> in_tree(bounds.begin(), bounds.end());
+    for (const std::uint32_t i : apart) in_tree[i] = {};
+    const int leaf_size = few && settings_.few_objects ? std::max(settings_.leaf_size, static_cast<int>(kFewObjects))
+                                                       : settings_.leaf_size;
+    auto tree = build_kd_tree({.bounds = in_tree, .split = settings_.split, .leaf_size = leaf_size}, control);
+    if (!tree) return false;
+    tree_ = std::move(*tree);
+    all_apart_ = settings_.few_objects && tree_.nodes.size() == 1;
+    if (all_apart_) apart.insert(apart.end(), tree_.references.begin(), tree_.references.end());
+    leaves_ = make_object_leaves(objects_, all_apart_ ? nullptr : &tree_, apart);
+    all_bounds_ = tree_.bounds;
+    for (const std::uint32_t i : apart) all_bounds_.extend(bounds[i]);
     return true;
 }
 

@@ -36,13 +36,14 @@ public:
 
     /// False where all objects are tested in turn.
     bool has_object_tree() const { return tree_.nodes.size() > 1; }
-    /// Objects tested in turn beside a tree over all others.
+    /// Objects tested in turn beside a tree over all others, unless AccelSettings::few_objects is off.
     std::size_t large_objects() const { return large_objects_; }
 
 private:
     KdAccelerator() = default;
     bool build_meshes(const KdAccelerator* previous, BuildControl& control);
     bool build_objects(BuildControl& control);
+    bool build_object_tree(std::span<const Bounds3> bounds, BuildControl& control);
     KdScene scene() const {
         return {objects_, mesh_of_object_, planes_, all_apart_ ? nullptr : &tree_, &leaves_, bounds_, all_bounds_};
     }
@@ -56,7 +57,7 @@ private:
     std::vector<const MeshTree*> mesh_of_object_;
     KdTree tree_;
     ObjectLeaves leaves_;
-    bool all_apart_ = false;       ///< No tree is needed.
+    bool all_apart_ = false;  ///< No tree is needed.
     std::size_t large_objects_ = 0;
     std::vector<Bounds3> bounds_;  ///< As KdScene::bounds.
     Bounds3 all_bounds_;

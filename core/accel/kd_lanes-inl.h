@@ -73,7 +73,8 @@ public:
         const Words axis = hn::And(pair.high, hn::Set(dw, KdNode::kAxisMask));
         const AxisChoice choice(axis);
         const auto is_inner = hn::Ne(axis, hn::Set(dw, KdNode::kLeaf));
-        const Floats inverse = choice.of(inverse_), pad = choice.of(pad_), distance = hn::Sub(plane, choice.of(origin_));
+        const Floats inverse = choice.of(inverse_), pad = choice.of(pad_),
+                     distance = hn::Sub(plane, choice.of(origin_));
         const Floats enter = hn::MulSub(distance, inverse, pad), leave = hn::MulAdd(distance, inverse, pad);
         const Floats begin = hn::Load(d, begin_), end = hn::Load(d, end_);
 

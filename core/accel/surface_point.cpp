@@ -1,7 +1,8 @@
 #include "core/accel/surface_point.h"
 
+#include "core/accel/sphere_points.h"
+#include "core/accel/surface_rounding.h"
 #include "core/accel/traced_object.h"
-#include "core/math/float_error.h"
 
 #include <numbers>
 #include <tuple>
@@ -274,14 +275,10 @@ constexpr std::size_t kMeshKind = std::variant_size_v<TracedShape> - 1;
 static_assert(std::is_same_v<std::variant_alternative_t<kMeshKind, TracedShape>, std::shared_ptr<const TriangleMesh>>);
 
 SurfacePoint rounded(const Surface& surface) {
-    // Rounding to float, and the rounding of everything in double before it. The smallest term keeps the bound positive
-    // where the surface passes through the origin.
-    constexpr double kDoubleError = 0x1p-36;
-    constexpr double kSmallest = 0x1p-100;
     SurfacePoint point;
     point.p = Vec3(surface.p);
     point.p_error =
-        Vec3(glm::abs(surface.p) * (1.01 * double{kUnitRoundoff}) + (kDoubleError * surface.size + kSmallest));
+        Vec3(glm::abs(surface.p) * kSurfaceRounding + (kSurfaceDoubleError * surface.size + kSurfaceSmallestError));
     point.ng = surface.ng;
     point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;
     point.uv = surface.uv;
@@ -293,6 +290,7 @@ SurfacePoint rounded(const Surface& surface) {
 struct Surfaces::Tables {
     /// Those of each kind of shape side by side.
     SurfacesOf<TracedShape>::type kinds;
+    std::vector<SphereD> spheres;  ///< Those of the first kind again.
 
     /// The surface of the kind, one of the alternatives of TracedShape, with the index.
     template <std::size_t kKind = 0>
@@ -309,10 +307,14 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::m
         std::visit(
             [&]<typename Shape>(const Shape& shape) {
                 auto& table = std::get<std::vector<SurfaceOf<Shape>>>(tables_->kinds);
-                entries_.push_back(
-                    {static_cast<std::uint32_t>(instance.shape.index()), static_cast<std::uint32_t>(table.size())});
+                entries_.push_back({static_cast<std::uint32_t>(instance.shape.index()),
+                                    static_cast<std::uint32_t>(table.size()), false});
                 table.emplace_back(shape, instance.to_world);
                 has_meshes_ |= instance.shape.index() == kMeshKind;
+                if constexpr (std::is_same_v<Shape, Sphere>) {
+                    tables_->spheres.push_back(table.back().sphere);
+                    entries_.back().together = table.back().placement.in_world();
+                }
             },
             instance.shape);
     }
@@ -345,11 +347,35 @@ SurfacePoint Surfaces::point(const Ray& ray, const Hit& hit, bool with_uv) const
     return rounded(tables_->at(entries_[hit.object], ray, hit, with_uv));
 }
 
+void Surfaces::points(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
+                      std::span<SurfacePoint> points) const {
+    constexpr std::size_t kTogether = 64;
+    SphereHit spheres[kTogether];
+    std::size_t count = 0;
+    const auto finish_spheres = [&] {
+        sphere_points(tables_->spheres, std::span(spheres, count), rays, hits, points);
+        count = 0;
+    };
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (has_meshes_) prefetch_meshes(hits, i);
+        if (!hits[i].valid()) continue;
+        const Entry& entry = entries_[hits[i].object];
+        const bool uv = !with_uv.empty() && with_uv[i] != 0;
+        if (entry.together && !uv) {
+            spheres[count++] = {static_cast<std::uint32_t>(i), entry.index};
+            if (count == kTogether) finish_spheres();
+        } else {
+            points[i] = point(rays[i], hits[i], uv);
+        }
+    }
+    finish_spheres();
+}
+
 std::uint64_t Surfaces::memory_bytes() const {
     const auto bytes = [](const auto&... table) {
         return (std::uint64_t{0} + ... + (table.capacity() * sizeof(table[0])));
     };
-    return entries_.capacity() * sizeof(Entry) + std::apply(bytes, tables_->kinds);
+    return entries_.capacity() * sizeof(Entry) + bytes(tables_->spheres) + std::apply(bytes, tables_->kinds);
 }
 
 SurfacePoint surface_point(std::span<const GeometryInstance> instances, const Ray& ray, const Hit& hit) {

@@ -35,10 +35,10 @@ public:
     /// Derives the surface from a valid `hit` of `ray` with the instances. Nothing here depends on the acceleration
     /// structure. uv may be left at 0 where nobody asks for it.
     SurfacePoint point(const Ray& ray, const Hit& hit, bool with_uv = true) const;
-    /// Before `point` of hits[i], for all in turn: asks the memory for what those some places later will read.
-    void prefetch(std::span<const Hit> hits, std::size_t i) const {
-        if (has_meshes_) prefetch_meshes(hits, i);
-    }
+    /// points[i] becomes `point` of rays[i] and hits[i] for all that are valid, to the last bit. with_uv: one a hit, or none
+    /// where nobody asks for uv.
+    void points(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
+                std::span<SurfacePoint> points) const;
     std::uint64_t memory_bytes() const;
 
 private:
@@ -48,6 +48,7 @@ private:
     /// Where in the tables an instance is.
     struct Entry {
         std::uint32_t kind, index;
+        bool together;  ///< Worked out many at once, unless uv are asked for.
     };
     std::vector<Entry> entries_;
     std::unique_ptr<Tables> tables_;

@@ -73,6 +73,7 @@ struct PathBatch {
     std::vector<Ray> rays, next_rays;
     std::vector<Hit> hits;
     std::vector<SurfacePoint> points;
+    std::vector<std::uint8_t> with_uv;  ///< Whether texture coordinates are asked for; empty where they never are.
 
     // One a shadow ray.
     std::vector<Ray> shadow_rays;

@@ -130,13 +130,12 @@ void PathTracer::intersect(PathBatch& batch) const {
 template <bool kVaries>
 void PathTracer::surface_interactions(PathBatch& batch) const {
     batch.points.resize(batch.rays.size());
-    for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-        scene_.surfaces().prefetch(batch.hits, i);
-        const Hit& hit = batch.hits[i];
-        if (!hit.valid()) continue;
-        batch.points[i] =
-            scene_.surfaces().point(batch.rays[i], hit, varies<kVaries>(scene_.packed_material(hit.object)));
+    batch.with_uv.clear();
+    if (kVaries) {
+        for (const Hit& hit : batch.hits)
+            batch.with_uv.push_back(hit.valid() && varies<kVaries>(scene_.packed_material(hit.object)) ? 1 : 0);
     }
+    scene_.surfaces().points(batch.rays, batch.hits, batch.with_uv, batch.points);
 }
 
 /// Whether the Bsdf has to be worked out at the hit.

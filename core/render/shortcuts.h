@@ -27,7 +27,7 @@ struct ShortcutField {
 
 /// One list: the panel, the command line, benchmarks and tests loop over it.
 inline constexpr ShortcutField kShortcuts[] = {
-    {"few_objects", &Shortcuts::few_objects, "Rays go through a tree over the objects, however few these are."},
+    {"few_objects", &Shortcuts::few_objects, "All objects stand in a tree, however few or large they are."},
     {"any_hit", &Shortcuts::any_hit, "Shadow rays of camera paths look for the nearest hit instead of any."},
     {"black_shadow_rays", &Shortcuts::black_shadow_rays,
      "Shadow rays are traced even where their light would be black."},

@@ -195,6 +195,18 @@ Skip tree_over_objects(const RenderScene& scene) {
             .shortcut = can_do_without ? shortcut_of(&Shortcuts::few_objects) : nullptr};
 }
 
+Skip large_objects(const RenderScene& scene) {
+    const auto* kd = dynamic_cast<const KdAccelerator*>(&scene.accelerator());
+    const std::size_t large = kd ? kd->large_objects() : 0;
+    return {.name = "Large objects in leaves",
+            .state = skipped_where(large > 0),
+            .why = large > 0 ? "Beside the tree they are tested once with every ray, not in leaf after leaf."
+                             : "No object is large beside a tree over the others.",
+            .saved = large,
+            .unit = "objects",
+            .shortcut = large > 0 ? shortcut_of(&Shortcuts::few_objects) : nullptr};
+}
+
 Skip cells_of_trees(const RenderScene& scene) {
     const AccelStats stats = scene.accelerator().stats();
     const bool active = stats.nodes == stats.leaves;
@@ -309,6 +321,7 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
                             lens_samples(scene),
                             textures(scene),
                             tree_over_objects(scene),
+                            large_objects(scene),
                             cells_of_trees(scene),
                             hidden_objects(scene)};
     std::ranges::move(copies_of_meshes(scene), std::back_inserter(skips));

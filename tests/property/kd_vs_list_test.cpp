@@ -1,3 +1,4 @@
+#include "core/accel/kd_accelerator.h"
 #include "core/math/isa.h"
 #include "tests/support/hits.h"
 
@@ -28,6 +29,25 @@ std::vector<Ray> make_rays(const std::vector<GeometryInstance>& instances, int c
     Random random(seed);
     std::vector<Ray> rays;
     for (int i = 0; i < count; ++i) rays.push_back(make_ray(instances, random));
+    return rays;
+}
+
+/// Rays in bundles around each of these, of all widths down to none: the kernels take those that stay together together.
+std::vector<Ray> bundles(const std::vector<Ray>& around, std::uint64_t seed) {
+    constexpr int kBundle = 16;
+    Random random(seed);
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+        const float size = glm::length(around[i].direction);
+        const float width = i % 3 == 0 ? 0 : std::ldexp(1.0f, -random.integer(2, 20));
+        for (int k = 0; k < kBundle; ++k) {
+            Ray ray = around[i];
+            ray.origin += random.in_cube(width);
+            ray.direction += size * random.in_cube(width);
+            if (k % 5 == 4) ray.t_max = random.uniform(0, 3);
+            if (ray.direction != Vec3(0)) rays.push_back(ray);
+        }
+    }
     return rays;
 }
 
@@ -63,6 +83,26 @@ TEST(KdVersusList, ManyScenes) {
 TEST(KdVersusList, ACrowdOfObjects) {
     const auto instances = make_scene(7, 600, 30);
     expect_same_as_list(instances, make_rays(instances, 3000, 8), {1, 16, 64});
+}
+
+TEST(KdVersusList, LargeObjectsBesideACrowd) {
+    auto instances = make_scene(9, 300, 30);
+    Mat3 flattened(1);
+    flattened[1][1] = 0.01f;
+    instances.push_back({Sphere{Vec3(0, -200, 0), 197}, {}});
+    instances.push_back({Quad{Vec3(-8, -4, -8), Vec3(16, 0, 0), Vec3(0, 0, 16)}, {}});
+    instances.push_back({Triangle{{Vec3(-9, -9, -4), Vec3(9, -9, -4), Vec3(0, 9, -4)}}, {}});
+    instances.push_back({Box{Vec3(-6, -5, -6), Vec3(6, -4.5f, 6)}, {}});
+    instances.push_back({Sphere{Vec3(0), 7}, {flattened, Vec3(0, 4, 0)}});
+    const auto built = build(instances, {});
+    ASSERT_EQ(dynamic_cast<const KdAccelerator&>(*built).large_objects(), 5u);
+    std::vector<Ray> rays = make_rays(instances, 3000, 10);
+    for (const Ray& ray : bundles(make_rays(instances, 60, 11), 12)) rays.push_back(ray);
+    for (const std::string_view set : instruction_sets()) {
+        use_instruction_set(set);
+        expect_same_as_list(instances, rays, {1, 16, 1000});
+    }
+    use_instruction_set(instruction_sets().front());
 }
 
 /// Everything on the lattice: rays run within faces, along edges and through vertices.
@@ -131,25 +171,6 @@ TEST(KdVersusList, FarFromTheOriginAndAtEveryScale) {
             expect_same_as_list(instances, rays, {1, 16});
         }
     }
-}
-
-/// Rays in bundles around each of these, of all widths down to none: the kernels take those that stay together together.
-std::vector<Ray> bundles(const std::vector<Ray>& around, std::uint64_t seed) {
-    constexpr int kBundle = 16;
-    Random random(seed);
-    std::vector<Ray> rays;
-    for (std::size_t i = 0; i < around.size(); ++i) {
-        const float size = glm::length(around[i].direction);
-        const float width = i % 3 == 0 ? 0 : std::ldexp(1.0f, -random.integer(2, 20));
-        for (int k = 0; k < kBundle; ++k) {
-            Ray ray = around[i];
-            ray.origin += random.in_cube(width);
-            ray.direction += size * random.in_cube(width);
-            if (k % 5 == 4) ray.t_max = random.uniform(0, 3);
-            if (ray.direction != Vec3(0)) rays.push_back(ray);
-        }
-    }
-    return rays;
 }
 
 TEST(KdVersusList, RaysThatStayTogether) {

@@ -2,10 +2,12 @@
 
 #include "core/accel/traced_object.h"
 #include "core/math/float_error.h"
+#include "core/math/isa.h"
 #include "tests/support/accel_scenes.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 
 namespace rayuela::test {
@@ -183,6 +185,46 @@ TEST(SurfacePoint, LeavingRaysFindASurfaceCloseBehind) {
         const Vec3 origin = offset_ray_origin(point.p, point.p_error, point.ng, ray.direction);
         ASSERT_EQ(intersect(*list, {.origin = origin, .direction = ray.direction}).object, 1u);
     }
+}
+
+/// All shapes and transforms, spheres of all sizes and distances among them; with texture coordinates, without, and mixed.
+TEST(SurfacePoint, ManyAtOnceAreTheSameAsEachAlone) {
+    std::vector<GeometryInstance> instances = make_scene(17, 60, 40);
+    Random random(18);
+    for (int i = 0; i < 40; ++i)
+        instances.push_back({Sphere{random.in_cube(4), std::ldexp(1.0f, random.integer(-12, 2))}, {}});
+    instances.push_back({Sphere{Vec3(0, -1e4f, 0), 1e4f - 3}, {}});
+    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    std::vector<Ray> rays;
+    for (int i = 0; i < 5000; ++i) rays.push_back(make_ray(instances, random));
+    std::vector<Hit> hits(rays.size());
+    list->intersect(rays, hits);
+    std::vector<std::uint8_t> mixed;
+    for (std::size_t i = 0; i < rays.size(); ++i) mixed.push_back(i % 3 == 0 ? 1 : 0);
+    const Surfaces surfaces(instances);
+    const auto same = [](const Vec3& a, const Vec3& b) {
+        return std::bit_cast<std::array<std::uint32_t, 3>>(a) == std::bit_cast<std::array<std::uint32_t, 3>>(b);
+    };
+    for (const std::string_view set : instruction_sets()) {
+        use_instruction_set(set);
+        for (const auto& with_uv : {std::vector<std::uint8_t>(), std::vector<std::uint8_t>(rays.size(), 1), mixed}) {
+            std::vector<SurfacePoint> points(rays.size());
+            surfaces.points(rays, hits, with_uv, points);
+            std::size_t spheres = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                if (!hits[i].valid()) continue;
+                spheres += std::holds_alternative<Sphere>(instances[hits[i].object].shape);
+                const bool uv = !with_uv.empty() && with_uv[i] != 0;
+                const SurfacePoint expected = surfaces.point(rays[i], hits[i], uv), &actual = points[i];
+                ASSERT_TRUE(same(expected.p, actual.p) && same(expected.p_error, actual.p_error) &&
+                            same(expected.ng, actual.ng) && same(expected.ns, actual.ns))
+                    << "ray " << i << ' ' << set;
+                ASSERT_EQ(uv ? expected.uv : Vec2(0), uv ? actual.uv : Vec2(0)) << "ray " << i << ' ' << set;
+            }
+            ASSERT_GT(spheres, 1000u);
+        }
+    }
+    use_instruction_set(instruction_sets().front());
 }
 
 }  // namespace

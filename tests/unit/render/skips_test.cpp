@@ -125,6 +125,17 @@ TEST(Skips, FewObjectsNeedNoTree) {
     EXPECT_THAT(skipped_in(scene), AllOf(Contains("Cells of trees"), Contains("Tree over the objects")));
 }
 
+TEST(Skips, LargeObjectsStandBesideATreeOverTheOthers) {
+    Scene scene = lit_ball(Diffuse{});
+    EXPECT_EQ(skip_of(scene, "Large objects in leaves").state, SkipState::absent) << "there is no tree";
+    for (std::size_t i = 0; i < kFewObjects; ++i)
+        add_object(scene, Sphere{Vec3(static_cast<float>(i % 13), 1, static_cast<float>(i / 13)), 0.1f});
+    EXPECT_EQ(skip_of(scene, "Large objects in leaves").state, SkipState::absent);
+    add_object(scene, Sphere{Vec3(0, -1000, 0), 1000});
+    EXPECT_EQ(skip_of(scene, "Large objects in leaves").state, SkipState::skipped);
+    EXPECT_EQ(skip_of(scene, "Large objects in leaves").saved, 1u);
+}
+
 TEST(Skips, HiddenObjectsAreInNoTreeAndNoListOfLights) {
     Scene scene = lit_ball(Metal{});
     EXPECT_EQ(skip_of(scene, "Hidden objects").state, SkipState::absent);

@@ -1,0 +1,152 @@
+#include "core/accel/sphere_points.h"
+
+#include "core/accel/surface_rounding.h"
+
+#include <algorithm>
+
+// The kernels need no more than these.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/accel/sphere_points.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/accel/lane_types-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
+
+struct DoubleAxes {
+    Doubles x, y, z;
+};
+HWY_INLINE DoubleAxes operator-(const DoubleAxes& a, const DoubleAxes& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE DoubleAxes operator*(Doubles s, const DoubleAxes& v) {
+    return {hn::Mul(s, v.x), hn::Mul(s, v.y), hn::Mul(s, v.z)};
+}
+/// As glm adds it up.
+HWY_INLINE Doubles dot(const DoubleAxes& a, const DoubleAxes& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+/// rayuela::squared_distance_excess, the same to the bit.
+HWY_INLINE Doubles squared_distance_excess(const DoubleAxes& a, const DoubleAxes& b, Doubles r) {
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSE4
+    // No fused multiply-add here.
+    const DoubleTag dd;
+    alignas(64) double as[3][kDoubles], bs[3][kDoubles], result[kDoubles];
+    const DoubleAxes* const from[] = {&a, &b};
+    double(*const to[])[kDoubles] = {as, bs};
+    for (std::size_t k = 0; k < 2; ++k) {
+        hn::Store(from[k]->x, dd, to[k][0]);
+        hn::Store(from[k]->y, dd, to[k][1]);
+        hn::Store(from[k]->z, dd, to[k][2]);
+    }
+    hn::Store(r, dd, result);
+    for (std::size_t k = 0; k < kDoubles; ++k) {
+        result[k] = rayuela::squared_distance_excess(Vec3d(as[0][k], as[1][k], as[2][k]),
+                                                     Vec3d(bs[0][k], bs[1][k], bs[2][k]), result[k]);
+    }
+    return hn::Load(dd, result);
+#else
+    const auto two_sum_error = [](Doubles x, Doubles y, Doubles sum) HWY_ATTR {
+        const Doubles z = hn::Sub(sum, x);
+        return hn::Add(hn::Sub(x, hn::Sub(sum, z)), hn::Sub(y, z));
+    };
+    Doubles sum = hn::Neg(hn::Mul(r, r)), errors = hn::Neg(hn::MulAdd(r, r, sum));
+    const auto add = [&](Doubles x, Doubles y) HWY_ATTR {
+        const Doubles difference = hn::Sub(x, y), lost = two_sum_error(x, hn::Neg(y), difference);
+        const Doubles square = hn::Mul(difference, difference), next = hn::Add(sum, square);
+        const Doubles twice = hn::Mul(hn::Mul(hn::Set(DoubleTag(), 2), difference), lost);
+        errors = hn::Add(errors, hn::Add(hn::Add(hn::MulSub(difference, difference, square), twice),
+                                         two_sum_error(sum, square, next)));
+        sum = next;
+    };
+    add(a.x, b.x);
+    add(a.y, b.y);
+    add(a.z, b.z);
+    return hn::Add(sum, errors);
+#endif
+}
+
+/// Up to kDoubles of them.
+HWY_INLINE void points_of(const SphereD* spheres, std::span<const SphereHit> found, const Ray* rays, const Hit* hits,
+                          SurfacePoint* points) {
+    static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float) &&
+                  sizeof(SphereD) == 4 * sizeof(double));
+    const DoubleTag dd;
+    const hn::Rebind<float, DoubleTag> df;
+    alignas(64) std::int64_t sphere_field[kDoubles];
+    alignas(64) std::int32_t ray_field[kDoubles], hit_field[kDoubles];
+    for (std::size_t k = 0; k < kDoubles; ++k) {
+        const SphereHit& one = found[std::min(k, found.size() - 1)];
+        sphere_field[k] = 4 * static_cast<std::int64_t>(one.sphere);
+        ray_field[k] = static_cast<std::int32_t>(8 * one.ray);
+        hit_field[k] = static_cast<std::int32_t>(6 * one.ray);
+    }
+    const auto gather = [&](const float* base, const std::int32_t* fields) HWY_ATTR {
+        const auto index = hn::Load(hn::Rebind<std::int32_t, DoubleTag>(), fields);
+        return hn::PromoteTo(dd, hn::GatherIndex(df, base, index));
+    };
+    const auto of_ray = [&](std::size_t field) HWY_ATTR { return gather(&rays->origin.x + field, ray_field); };
+    const auto of_sphere = [&](std::size_t field) HWY_ATTR {
+        const auto index = hn::Load(hn::RebindToSigned<DoubleTag>(), sphere_field);
+        return hn::GatherIndex(dd, &spheres->center.x + field, index);
+    };
+    const DoubleAxes center{of_sphere(0), of_sphere(1), of_sphere(2)};
+    const Doubles radius = of_sphere(3), t = gather(&hits->t, hit_field);
+    const DoubleAxes along{hn::Add(of_ray(0), hn::Mul(t, of_ray(4))), hn::Add(of_ray(1), hn::Mul(t, of_ray(5))),
+                           hn::Add(of_ray(2), hn::Mul(t, of_ray(6)))};
+    const DoubleAxes from_center = along - center;
+    const Doubles distance = hn::Sqrt(dot(from_center, from_center));
+    const DoubleAxes n{hn::Div(from_center.x, distance), hn::Div(from_center.y, distance),
+                       hn::Div(from_center.z, distance)};
+    const Doubles height = hn::Div(squared_distance_excess(along, center, radius), hn::Add(distance, radius));
+    const DoubleAxes p = along - height * n;
+    const DoubleAxes ng = hn::Div(hn::Set(dd, 1), hn::Sqrt(dot(n, n))) * n;
+    const Doubles size = hn::Max(hn::Abs(p.x), hn::Max(hn::Abs(p.y), hn::Abs(p.z)));
+
+    alignas(64) float rows[9][kDoubles];
+    const auto put = [&](const DoubleAxes& v, std::size_t row) HWY_ATTR {
+        hn::Store(hn::DemoteTo(df, v.x), df, rows[row]);
+        hn::Store(hn::DemoteTo(df, v.y), df, rows[row + 1]);
+        hn::Store(hn::DemoteTo(df, v.z), df, rows[row + 2]);
+    };
+    const Doubles own = hn::Add(hn::Mul(hn::Set(dd, kSurfaceDoubleError), size), hn::Set(dd, kSurfaceSmallestError));
+    const auto error = [&](Doubles x)
+                           HWY_ATTR { return hn::Add(hn::Mul(hn::Abs(x), hn::Set(dd, kSurfaceRounding)), own); };
+    put(p, 0);
+    put({error(p.x), error(p.y), error(p.z)}, 3);
+    put(ng, 6);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto vec = [&](std::size_t row) { return Vec3(rows[row][k], rows[row + 1][k], rows[row + 2][k]); };
+        points[found[k].ray] = {.p = vec(0), .p_error = vec(3), .ng = vec(6), .ns = vec(6), .uv = Vec2(0)};
+    }
+}
+
+HWY_ATTR void points_of_all(std::span<const SphereD> spheres, std::span<const SphereHit> found,
+                            std::span<const Ray> rays, std::span<const Hit> hits, std::span<SurfacePoint> points) {
+    for (std::size_t i = 0; i < found.size(); i += kDoubles) {
+        points_of(spheres.data(), found.subspan(i, std::min(kDoubles, found.size() - i)), rays.data(), hits.data(),
+                  points.data());
+    }
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rayuela {
+
+HWY_EXPORT(points_of_all);
+
+void sphere_points(std::span<const SphereD> spheres, std::span<const SphereHit> found, std::span<const Ray> rays,
+                   std::span<const Hit> hits, std::span<SurfacePoint> points) {
+    HWY_DYNAMIC_DISPATCH(points_of_all)(spheres, found, rays, hits, points);
+}
+
+}  // namespace rayuela
+#endif
