@@ -17,7 +17,7 @@ RELATIVE = {
     "core/shapes/intersect_triangle.h": ["std::fabs(ad) + std::fabs(bc)"],
     "core/shapes/intersect_box.h": ["kRounding"],
     "core/shapes/intersect_sphere.h": ["kSphereCancels"],
-    "core/accel/surface_point.cpp": ["kDoubleError", "kSmallest"],
+    "core/accel/surface_rounding.h": ["kSurfaceDoubleError", "kSurfaceSmallestError"],
     "core/accel/traced_object.cpp": ["kTolerance"],
     "core/accel/few_objects-inl.h": ["longest", "direction[axis]"],
     "core/accel/ray_block-inl.h": ["longest", "length >", "direction[axis]", "kBoundsTolerance"],
