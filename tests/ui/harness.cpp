@@ -10,6 +10,9 @@ namespace rayuela {
 
 namespace {
 
+/// The renderer has the processor meanwhile.
+constexpr std::chrono::milliseconds kBetweenFrames(RAYUELA_PATIENCE);
+
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -88,7 +91,7 @@ bool UiTest::draw_until(const std::function<bool()>& condition, double seconds) 
     for (int frames = 0; frames < 3 || !condition(); ++frames) {
         if (now() > end) return false;
         draw();
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(kBetweenFrames);
     }
     return true;
 }
@@ -108,7 +111,7 @@ bool UiTest::wait_until(ImGuiTestContext* script, const std::function<bool()>& c
     for (int frames = 0; frames < 2 || !condition(); ++frames) {
         if (now() > end) return false;
         script->Yield();
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(kBetweenFrames);
     }
     return true;
 }

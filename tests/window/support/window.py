@@ -14,6 +14,8 @@ import time
 import zlib
 
 SIZE = (1280, 800)
+# Sanitizers make everything several times slower.
+PATIENCE = int(os.environ.get("RAYUELA_PATIENCE", 1))
 
 
 class Screen:
@@ -61,7 +63,7 @@ def save_png(name, rows):
 
 
 def wait_for(what, condition, seconds=40):
-    end = time.monotonic() + seconds
+    end = time.monotonic() + seconds * PATIENCE
     while time.monotonic() < end:
         value = condition()
         if value:
