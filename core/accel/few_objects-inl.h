@@ -120,14 +120,15 @@ private:
         const Floats depth = rays.direction[z];
         const Floats from = depth * rays.t_min, to = depth * rays.t_end, rounding = hn::Set(d, 4 * kUnitRoundoff);
         const Floats begin = hn::Min(from, to), end = hn::Max(from, to);
+        const Floats least = hn::Max(hn::Set(d, 1), hn::Abs(depth)) * hn::Set(d, 0x1p-148f);  // RayBlock::depth_pad
         const FilterRays filter{rays.origin[x],
                                 rays.origin[y],
                                 rays.origin[z],
                                 rays.direction[x] / depth,
                                 rays.direction[y] / depth,
-                                filter_pad(rays.pad),
-                                begin - (rays.pad + rounding * hn::Abs(begin)),
-                                end + (rays.pad + rounding * hn::Abs(end))};
+                                FilterSlack::of(rays.pad),
+                                begin - (least + rounding * hn::Abs(begin)),
+                                end + (least + rounding * hn::Abs(end))};
         const std::size_t n = leaf_.triangles;
         const TurnedRuns turned(runs(), n, turn);
         for (std::size_t i = 0; i < n; ++i) {

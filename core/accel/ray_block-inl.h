@@ -39,6 +39,10 @@ struct RayBlock {
     /// Finite, so that no product is NaN: where the direction is 0 the sign of the difference decides alone.
     alignas(64) float inverse[3][kRoom];
     alignas(64) float pad[kRoom];      ///< Distance from a plane within which both sides count.
+    /// By how much the depths of vertices along the dominant axis may be off beside their rounding. Where the ray and the
+    /// corners are what the scene says, that is no more than what a t loses that is too small for a float: so a ray that
+    /// leaves a wall across that axis is clearly in front of it.
+    alignas(64) float depth_pad[kRoom];
     alignas(64) float t_scale[kRoom];  ///< Traversal counts t in this multiple: 1 but for directions of extreme length.
     /// Where the ray may meet the tree's bounds; empty, begin > end, where it does not.
     alignas(64) float begin[kRoom], end[kRoom];
@@ -122,6 +126,7 @@ private:
         write_planes(block, i, {o.x, o.y, o.z},
                      {hn::Mul(d.x, per_scale), hn::Mul(d.y, per_scale), hn::Mul(d.z, per_scale)},
                      hn::DemoteTo(df, scale), t_min, hn::Min(t_max, best), usable);
+        write_depth_pad(block, i, d);
     }
 
     /// rayuela::can_hit.
@@ -232,6 +237,14 @@ private:
         hn::StoreU(hn::IfThenElseZero(usable, end), df, block.end + i);
         hn::StoreU(pad, df, block.pad + i);
         hn::StoreU(scale, df, block.t_scale + i);
+    }
+
+    HWY_INLINE void write_depth_pad(RayBlock& block, std::size_t i, const DoubleVec3& d) const {
+        const DoubleTag dd;
+        const HalfFloatTag df;
+        const Doubles depth = hn::Max(hn::Abs(d.x), hn::Max(hn::Abs(d.y), hn::Abs(d.z)));
+        const HalfFloats least = hn::DemoteTo(df, hn::Mul(hn::Set(dd, 0x1p-148), hn::Max(hn::Set(dd, 1), depth)));
+        hn::StoreU(to_local_ ? hn::LoadU(df, block.pad + i) : least, df, block.depth_pad + i);
     }
 
     const float* rays_;

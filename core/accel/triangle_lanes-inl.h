@@ -16,7 +16,7 @@ namespace rayuela::HWY_NAMESPACE {
 /// A ray as the float test of triangles wants it: see RayBlock for the turn of the axes.
 struct TriangleFilter {
     std::uint32_t x, y, z;
-    float ox, oy, oz, shear_x, shear_y, pad;
+    float ox, oy, oz, shear_x, shear_y, pad, depth_pad;
     float z_begin, z_end;    ///< The depths, from the origin along z, between which a hit counts.
     float depth, t_min;      ///< Of the direction, with its sign; of the ray.
     std::uint32_t previous;  ///< The triangle decided last.
@@ -32,6 +32,7 @@ struct TriangleFilter {
                               .shear_x = static_cast<float>(block.shear_x[i]),
                               .shear_y = static_cast<float>(block.shear_y[i]),
                               .pad = block.pad[i],
+                              .depth_pad = block.depth_pad[i],
                               .depth = static_cast<float>(1 / block.inverse_z[i]),
                               .t_min = ray.t_min,
                               .previous = kNone};
@@ -39,7 +40,7 @@ struct TriangleFilter {
         return filter;
     }
 
-    HWY_INLINE void set_end(float t_max) { depth_range(depth, pad, t_min, t_max, z_begin, z_end); }
+    HWY_INLINE void set_end(float t_max) { depth_range(depth, depth_pad, t_min, t_max, z_begin, z_end); }
 };
 
 /// Up to kLanes triangles of a leaf, from the one that `runs` begins with.
@@ -48,7 +49,7 @@ HWY_INLINE FloatMask may_hit(const TriangleFilter& ray, const float* runs, std::
     const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
     const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n); };
     return may_hit(FilterRays{set(ray.ox), set(ray.oy), set(ray.oz), set(ray.shear_x), set(ray.shear_y),
-                              filter_pad(set(ray.pad)), set(ray.z_begin), set(ray.z_end)},
+                              FilterSlack::of(set(ray.pad)), set(ray.z_begin), set(ray.z_end)},
                    FilterTriangles{load(ray.x), load(ray.y), load(ray.z), load(3 + ray.x), load(3 + ray.y),
                                    load(3 + ray.z), load(6 + ray.x), load(6 + ray.y), load(6 + ray.z), load(9)});
 }

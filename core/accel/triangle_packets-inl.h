@@ -33,7 +33,7 @@ public:
     }
     HWY_INLINE void set_end(std::size_t lane, float t_max) {
         const std::size_t i = first_ + lane;
-        depth_range(depth_[lane], block_.pad[i], rays_[block_.id[i]].t_min, t_max, z_begin_[lane], z_end_[lane]);
+        depth_range(depth_[lane], block_.depth_pad[i], rays_[block_.id[i]].t_min, t_max, z_begin_[lane], z_end_[lane]);
     }
 
     /// Calls accept(lane, i, ShapeHit) for each ray in `here` that triangle i of the n of a leaf hits at t within
@@ -48,7 +48,7 @@ public:
                               of_block(block_.origin[turn_.z]),
                               load(shear_x_),
                               load(shear_y_),
-                              filter_pad(of_block(block_.pad)),
+                              FilterSlack::of(of_block(block_.pad)),
                               load(z_begin_),
                               load(z_end_)};
         const TurnedRuns turned(runs, n, turn_);

@@ -14,17 +14,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
-/// RayBlock::pad for the edge functions: infinite, so that all triangles pass, where these could overflow.
-HWY_INLINE Floats filter_pad(Floats pad) {
-    const FloatTag d;
-    constexpr float kLargestReach = 0x1p60f;
-    return hn::IfThenElse(hn::Lt(pad, hn::Set(d, 10 * kUnitRoundoff * kLargestReach)), pad, hn::Set(d, kInfinity));
-}
+/// By how much edge functions may be off for triangles of extent E: slope * E + offset. See may_hit.
+struct FilterSlack {
+    Floats slope, offset;
+
+    /// `pad` is RayBlock's. Infinite, so that all triangles pass, where the edge functions could overflow.
+    HWY_INLINE static FilterSlack of(Floats pad) {
+        const FloatTag d;
+        constexpr float kLargestReach = 0x1p60f;
+        const auto common = hn::Lt(pad, hn::Set(d, 10 * kUnitRoundoff * kLargestReach));
+        const Floats bounded = hn::IfThenElse(common, pad, hn::Set(d, kInfinity)), slope = hn::Set(d, 16) * bounded;
+        return {slope, slope * hn::Set(d, 1.6f) * bounded};
+    }
+};
 
 /// Rays, or one ray in all lanes, in the turn of the axes that RayBlock describes.
 struct FilterRays {
     Floats ox, oy, oz, shear_x, shear_y;
-    Floats pad;             ///< filter_pad.
+    FilterSlack slack;
     Floats z_begin, z_end;  ///< The depths, from the origin along z, between which a hit counts.
 };
 
@@ -60,10 +67,9 @@ struct TurnedRuns {
 
 /// False only for triangles that the exact test rejects. With u the unit roundoff and R = |origin| + |bounds|, the sheared
 /// vertices are right within 8uR; those of a triangle of extent E that is hit are below 2E; so its edge functions are right
-/// within 128uR(E + uR), which is less than 16 pad (E + 1.6 pad). A hit's depth lies between those of the vertices, which are
-/// right within pad. That holds with and without fma.
+/// within 128uR(E + uR), which is less than 16 pad (E + 1.6 pad). A hit's depth lies between those of the vertices. That holds
+/// with and without fma.
 HWY_INLINE FloatMask may_hit(const FilterRays& ray, const FilterTriangles& triangle) {
-    const FloatTag d;
     const Floats az = triangle.az - ray.oz, bz = triangle.bz - ray.oz, cz = triangle.cz - ray.oz;
     const Floats ax = hn::NegMulAdd(ray.shear_x, az, triangle.ax - ray.ox),
                  ay = hn::NegMulAdd(ray.shear_y, az, triangle.ay - ray.oy);
@@ -74,7 +80,7 @@ HWY_INLINE FloatMask may_hit(const FilterRays& ray, const FilterTriangles& trian
     const Floats u = hn::NegMulAdd(cy, bx, cx * by);
     const Floats v = hn::NegMulAdd(ay, cx, ax * cy);
     const Floats w = hn::NegMulAdd(by, ax, bx * ay);
-    const Floats slack = ray.pad * hn::Set(d, 16) * hn::MulAdd(hn::Set(d, 1.6f), ray.pad, triangle.extent);
+    const Floats slack = hn::MulAdd(ray.slack.slope, triangle.extent, ray.slack.offset);
     const auto outside =
         hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), hn::Neg(slack)), hn::Gt(hn::Max(u, hn::Max(v, w)), slack));
     const auto apart =
@@ -82,14 +88,15 @@ HWY_INLINE FloatMask may_hit(const FilterRays& ray, const FilterTriangles& trian
     return hn::Not(hn::Or(outside, apart));
 }
 
-/// The depths between which hits of a ray with t between t_min and t_max lie, where its direction has this depth.
-HWY_INLINE void depth_range(float depth, float pad, float t_min, float t_max, float& z_begin, float& z_end) {
+/// The depths between which hits of a ray with t between t_min and t_max lie, where its direction has this depth and those of
+/// vertices are right within depth_pad and their own rounding.
+HWY_INLINE void depth_range(float depth, float depth_pad, float t_min, float t_max, float& z_begin, float& z_end) {
     const float from = depth * t_min, to = depth * t_max;
     constexpr float kRounding = 4 * kUnitRoundoff;
     z_begin = std::min(from, to);
     z_end = std::max(from, to);
-    z_begin -= pad + kRounding * std::fabs(z_begin);
-    z_end += pad + kRounding * std::fabs(z_end);
+    z_begin -= depth_pad + kRounding * std::fabs(z_begin);
+    z_end += depth_pad + kRounding * std::fabs(z_end);
 }
 
 /// difference_of_products, the same to the bit.
@@ -115,6 +122,24 @@ HWY_INLINE Doubles exact_difference(Doubles a, Doubles d, Doubles b, Doubles c) 
 #endif
 }
 
+struct EdgeFunctions {
+    Doubles u, v, w;
+};
+/// cx by - cy bx, ax cy - ay cx and bx ay - by ax by exact_difference.
+HWY_INLINE EdgeFunctions edge_functions(Doubles ax, Doubles ay, Doubles bx, Doubles by, Doubles cx, Doubles cy) {
+    const DoubleTag dd;
+    const Doubles cx_by = hn::Mul(cx, by), ax_cy = hn::Mul(ax, cy), bx_ay = hn::Mul(bx, ay);
+    const Doubles u = hn::Sub(cx_by, hn::Mul(cy, bx)), v = hn::Sub(ax_cy, hn::Mul(ay, cx)),
+                  w = hn::Sub(bx_ay, hn::Mul(by, ax));
+    // |difference| > 2^-10 |one product| is more than exact_difference asks for, of both.
+    const auto plain = [&](Doubles difference, Doubles product) HWY_ATTR {
+        return hn::Gt(hn::Abs(difference), hn::Mul(hn::Set(dd, 0x1p-10), hn::Abs(product)));
+    };
+    if (HWY_LIKELY(hn::AllTrue(dd, hn::And(plain(u, cx_by), hn::And(plain(v, ax_cy), plain(w, bx_ay))))))
+        return {u, v, w};
+    return {exact_difference(cx, by, cy, bx), exact_difference(ax, cy, ay, cx), exact_difference(bx, ay, by, ax)};
+}
+
 /// As FilterRays and FilterTriangles.
 struct ExactRays {
     Doubles ox, oy, oz, shear_x, shear_y, inverse_z;
@@ -135,8 +160,7 @@ HWY_INLINE ExactHits intersect(const ExactRays& ray, const ExactTriangles& trian
                   cx = triangle.cx - ray.ox - ray.shear_x * cz;
     const Doubles ay = triangle.ay - ray.oy - ray.shear_y * az, by = triangle.by - ray.oy - ray.shear_y * bz,
                   cy = triangle.cy - ray.oy - ray.shear_y * cz;
-    const Doubles u = exact_difference(cx, by, cy, bx), v = exact_difference(ax, cy, ay, cx),
-                  w = exact_difference(bx, ay, by, ax);
+    const auto [u, v, w] = edge_functions(ax, ay, bx, by, cx, cy);
     const Doubles zero = hn::Zero(dd), determinant = u + v + w;
     const auto outside = hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), zero), hn::Gt(hn::Max(u, hn::Max(v, w)), zero));
     const Doubles inverse = hn::Set(dd, 1) / determinant;
