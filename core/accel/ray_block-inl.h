@@ -38,7 +38,7 @@ struct RayBlock {
     alignas(64) float origin[3][kRoom];
     /// Finite, so that no product is NaN: where the direction is 0 the sign of the difference decides alone.
     alignas(64) float inverse[3][kRoom];
-    alignas(64) float pad[kRoom];      ///< Distance from a plane within which both sides count.
+    alignas(64) float pad[kRoom];  ///< Distance from a plane within which both sides count.
     /// By how much the depths of vertices along the dominant axis may be off beside their rounding. Where the ray and the
     /// corners are what the scene says, that is no more than what a t loses that is too small for a float: so a ray that
     /// leaves a wall across that axis is clearly in front of it.
