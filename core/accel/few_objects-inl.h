@@ -120,7 +120,7 @@ private:
         const Floats depth = rays.direction[z];
         const Floats from = depth * rays.t_min, to = depth * rays.t_end, rounding = hn::Set(d, 4 * kUnitRoundoff);
         const Floats begin = hn::Min(from, to), end = hn::Max(from, to);
-        const Floats least = hn::Max(hn::Set(d, 1), hn::Abs(depth)) * hn::Set(d, 0x1p-148f);  // RayBlock::depth_pad
+        const Floats least = hn::Max(hn::Set(d, 1), hn::Abs(depth)) * hn::Set(d, kLeastDepthPad);
         const FilterRays filter{rays.origin[x],
                                 rays.origin[y],
                                 rays.origin[z],

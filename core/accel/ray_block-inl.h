@@ -22,6 +22,9 @@ namespace rayuela::HWY_NAMESPACE {
 /// Rays that are traced together: enough to keep the lanes full, few enough for the cache.
 inline constexpr std::size_t kBlockRays = 1024;
 
+/// RayBlock::depth_pad for a direction of depth 1 or less: above what a t loses that is too small for a float.
+inline constexpr float kLeastDepthPad = 0x1p-148f;
+
 /// Rays in the space of one kd-tree, prepared for the float traversal and for the exact tests of triangles. The traversal
 /// is conservative: it reaches a leaf of every primitive with which the exact tests in double find a hit, so that a tree gives
 /// the hits of a list bit for bit.
@@ -243,7 +246,8 @@ private:
         const DoubleTag dd;
         const HalfFloatTag df;
         const Doubles depth = hn::Max(hn::Abs(d.x), hn::Max(hn::Abs(d.y), hn::Abs(d.z)));
-        const HalfFloats least = hn::DemoteTo(df, hn::Mul(hn::Set(dd, 0x1p-148), hn::Max(hn::Set(dd, 1), depth)));
+        const HalfFloats least =
+            hn::DemoteTo(df, hn::Mul(hn::Set(dd, double{kLeastDepthPad}), hn::Max(hn::Set(dd, 1), depth)));
         hn::StoreU(to_local_ ? hn::LoadU(df, block.pad + i) : least, df, block.depth_pad + i);
     }
 
