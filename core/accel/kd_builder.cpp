@@ -1,9 +1,10 @@
 #include "core/accel/kd_builder.h"
 
-#include "core/accel/kd_cut.h"
+#include "core/accel/kd_partition.h"
 #include "core/accel/parallel.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace rayuela {
@@ -27,7 +28,19 @@ struct Subtree {
     std::vector<std::uint32_t> references;
 };
 
-using References = std::vector<KdReference>;
+/// Leaves new elements as the memory was: they are written before they are read.
+struct UnsetAllocator : std::allocator<KdReference> {
+    template <typename T>
+    struct rebind {
+        using other = UnsetAllocator;
+    };
+    void construct(KdReference*) const noexcept {}
+    template <typename... Arguments>
+    void construct(KdReference* at, Arguments&&... arguments) const {
+        std::construct_at(at, std::forward<Arguments>(arguments)...);
+    }
+};
+using References = std::vector<KdReference, UnsetAllocator>;
 
 bool is_usable(const Bounds3& b) {
     return !b.empty() && is_finite(b.lo) && is_finite(b.hi);
@@ -63,7 +76,8 @@ public:
         Subtree tree;
         if (control_.cancelled) return tree;
         if (references.size() <= kTaskReferences) {
-            build_node(tree, 0, references, 0, task);
+            const std::size_t count = references.size();
+            build_node(tree, 0, references, 0, count, task);
             return tree;
         }
         const auto cut = choose_cut(references, task);
@@ -71,11 +85,11 @@ public:
             make_leaf(tree, 0, references);
             return tree;
         }
-        References below;
-        below.reserve(references.size() / 2);
-        const std::size_t above = partition(references, 0, references.size(), *cut, below);
-        const auto [task_below, task_above] = child_tasks(task, *cut, references.size(), below.size(), above);
-        references.resize(above);
+        References below(references.size());
+        const KdPartCounts parts = partition(references, *cut, below.data());
+        const auto [task_below, task_above] = child_tasks(task, *cut, references.size(), parts);
+        below.resize(parts.below);
+        references.resize(parts.above);
 
         Subtree tree_below, tree_above;
         fork_join([&, task_below = task_below] { tree_below = build_task(std::move(below), task_below); },
@@ -85,24 +99,25 @@ public:
     }
 
 private:
-    /// The node's references are stack[begin..]; they are consumed. Children take turns on the same stack.
-    void build_node(Subtree& tree, std::uint32_t slot, References& stack, std::size_t begin, const NodeTask& task) {
+    /// The node's references are the `count` from `begin`; they and what follows are overwritten. Children take turns on
+    /// the same memory.
+    void build_node(Subtree& tree, std::uint32_t slot, References& memory, std::size_t begin, std::size_t count,
+                    const NodeTask& task) {
         if (control_.cancelled) return;
-        const std::size_t end = stack.size();
-        const auto cut = choose_cut(std::span(stack).subspan(begin), task);
+        const auto cut = choose_cut(std::span(memory).subspan(begin, count), task);
         if (!cut) {
-            make_leaf(tree, slot, std::span(stack).subspan(begin));
-            stack.resize(begin);
+            make_leaf(tree, slot, std::span(memory).subspan(begin, count));
             return;
         }
-        const std::size_t above = partition(stack, begin, end, *cut, stack);
-        const auto [task_below, task_above] = child_tasks(task, *cut, end - begin, stack.size() - end, above);
+        const std::size_t end = begin + count;
+        if (memory.size() < end + count) memory.resize(end + count);
+        const KdPartCounts parts = partition(std::span(memory).subspan(begin, count), *cut, memory.data() + end);
+        const auto [task_below, task_above] = child_tasks(task, *cut, count, parts);
         const auto children = static_cast<std::uint32_t>(tree.nodes.size());
         tree.nodes[slot] = KdNode::inner(cut->axis, cut->plane, children);
         tree.nodes.resize(tree.nodes.size() + 2);
-        build_node(tree, children, stack, end, task_below);
-        stack.resize(begin + above);
-        build_node(tree, children + 1, stack, begin, task_above);
+        build_node(tree, children, memory, end, parts.below, task_below);
+        build_node(tree, children + 1, memory, begin, parts.above, task_above);
     }
 
     void make_leaf(Subtree& tree, std::uint32_t slot, std::span<const KdReference> references) {
@@ -111,7 +126,7 @@ private:
                                         static_cast<std::uint32_t>(references.size()));
         for (const KdReference& reference : references) {
             tree.references.push_back(reference.primitive);
-            owned += reference.owned ? 1 : 0;
+            owned += reference.owned;
         }
         control_.done.fetch_add(owned, std::memory_order_relaxed);
     }
@@ -130,62 +145,30 @@ private:
     }
 
     std::optional<KdCut> median_cut(std::span<const KdReference> references, const NodeTask& task) const {
-        const auto owned = std::count_if(references.begin(), references.end(), [](const auto& r) { return r.owned; });
+        const auto owned = std::count_if(references.begin(), references.end(), [](const auto& r) { return r.owned != 0; });
         if (owned <= input_.leaf_size) return {};
         std::vector<std::uint32_t> scratch;
         return find_median_cut(references, task.cell, input_.bounds, scratch);
     }
 
-    /// Moves stack[begin, end) apart: the parts above to stack[begin...], whose number is returned, the parts below to
-    /// the end of `below`, which may be the same stack.
-    std::size_t partition(References& stack, std::size_t begin, std::size_t end, const KdCut& cut,
-                          References& below) const {
-        std::size_t above_end = begin;
-        for (std::size_t i = begin; i < end; ++i) {
-            const KdReference reference = stack[i];
-            if (input_.split == KdSplit::sah && reference.box.hi[cut.axis] <= cut.plane) {
-                below.push_back(reference);
-                continue;
-            }
-            if (input_.split == KdSplit::sah && reference.box.lo[cut.axis] >= cut.plane) {
-                stack[above_end++] = reference;
-                continue;
-            }
-            KdSides sides = split_reference(reference, input_.mesh, cut.axis, cut.plane);
-            bool owned_below = !sides.below.empty();
-            if (input_.split == KdSplit::median && reference.owned) {
-                owned_below = owner_below(cut, reference.primitive, input_.bounds[reference.primitive]);
-                keep_with_owner(sides, reference.box, cut, owned_below);
-            }
-            const bool owned = reference.owned;
-            if (!sides.above.empty()) stack[above_end++] = {sides.above, reference.primitive, owned && !owned_below};
-            if (!sides.below.empty()) below.push_back({sides.below, reference.primitive, owned && owned_below});
-        }
-        return above_end - begin;
-    }
-
-    /// The owner's side has the reference even where only the centre of the bounds lies there, not the triangle.
-    static void keep_with_owner(KdSides& sides, const Bounds3& box, const KdCut& cut, bool owned_below) {
-        Bounds3& owner = owned_below ? sides.below : sides.above;
-        if (!owner.empty()) return;
-        owner = box;
-        const bool within_plane = box.lo[cut.axis] == cut.plane && box.hi[cut.axis] == cut.plane;
-        if (within_plane) (owned_below ? sides.above : sides.below) = {};
+    KdPartCounts partition(std::span<KdReference> references, const KdCut& cut, KdReference* below) const {
+        return input_.split == KdSplit::sah ? partition_sah(references, input_.mesh, cut, below)
+                                            : partition_median(references, input_.mesh, cut, input_.bounds, below);
     }
 
     static std::pair<NodeTask, NodeTask> child_tasks(const NodeTask& task, const KdCut& cut, std::size_t references,
-                                                     std::size_t below, std::size_t above) {
+                                                     const KdPartCounts& parts) {
         NodeTask task_below = task, task_above = task;
         task_below.cell.hi[cut.axis] = cut.plane;
         task_above.cell.lo[cut.axis] = cut.plane;
         task_below.depth = task_above.depth = task.depth + 1;
-        const std::uint64_t both = below + above;
+        const std::uint64_t both = parts.below + parts.above;
         const std::uint64_t added = both > references ? both - references : 0;
         const std::uint64_t left = task.duplicates_left - std::min(added, task.duplicates_left);
-        task_below.duplicates_left = both == 0 ? 0 : left * below / both;
+        task_below.duplicates_left = both == 0 ? 0 : left * parts.below / both;
         task_above.duplicates_left = left - task_below.duplicates_left;
         const std::uint64_t nodes = task.nodes_left - 2;
-        task_below.nodes_left = both == 0 ? 0 : nodes * below / both;
+        task_below.nodes_left = both == 0 ? 0 : nodes * parts.below / both;
         task_above.nodes_left = nodes - task_below.nodes_left;
         return {task_below, task_above};
     }
@@ -204,7 +187,7 @@ std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& con
     for (std::uint32_t i = 0; i < input.bounds.size(); ++i) {
         const Bounds3& box = input.bounds[i];
         if (!is_usable(box)) continue;
-        references.push_back({box, i, true});
+        references.push_back({box, i, 1});
         root.cell.extend(box);
     }
     root.duplicates_left = std::max(kDuplicates * references.size(), kAlwaysAllowed);

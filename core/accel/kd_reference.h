@@ -11,7 +11,9 @@ namespace rayuela {
 struct KdReference {
     Bounds3 box;
     std::uint32_t primitive = 0;
-    bool owned = true;  ///< One reference of each primitive owns it: that one counts for progress and for leaf sizes.
+    /// 1 or 0: one reference of each primitive owns it, which counts for progress and for leaf sizes. Not a bool, whose
+    /// padding makes copies slow.
+    std::uint32_t owned = 1;
 };
 
 /// A reference on both sides of a plane; a side that the primitive does not reach is empty.

@@ -1,8 +1,11 @@
 #include "core/accel/kd_cut.h"
 
+#include "core/math/float_error.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 // The kernels need no more than these.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -102,20 +105,24 @@ HWY_INLINE void search_exact(std::span<const KdReference> references, CutSearch&
     const std::size_t n = references.size();
     Planes planes;
     planes.size = 2 * n;
+    alignas(64) float begins[kExactLimit];
     for (int axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 0; i < n; ++i) {
-            planes.plane[i] = references[i].box.lo[axis];
-            planes.plane[n + i] = references[i].box.hi[axis];
+            const float lo = references[i].box.lo[axis], hi = references[i].box.hi[axis];
+            planes.plane[i] = lo;
+            planes.plane[n + i] = hi;
+            // So that a flat box begins before the plane in which it lies.
+            begins[i] = lo < hi ? lo : next_down(lo);
         }
         for (std::size_t i = 0; i < planes.size; i += kLanes) {
             const Floats plane = hn::LoadU(d, planes.plane + i);
             auto below = hn::Zero(di), above = below;
             for (std::size_t k = 0; k < n; ++k) {
+                const FloatMask is_below = hn::Lt(hn::Set(d, begins[k]), plane);
                 const FloatMask is_above = hn::Gt(hn::Set(d, planes.plane[n + k]), plane);
-                const FloatMask begins = hn::Lt(hn::Set(d, planes.plane[k]), plane);
                 // A mask's lanes are 0 or -1.
+                below = hn::Sub(below, hn::VecFromMask(di, hn::RebindMask(di, is_below)));
                 above = hn::Sub(above, hn::VecFromMask(di, hn::RebindMask(di, is_above)));
-                below = hn::Sub(below, hn::VecFromMask(di, hn::RebindMask(di, hn::Or(begins, hn::Not(is_above)))));
             }
             hn::StoreU(below, di, planes.below + i);
             hn::StoreU(above, di, planes.above + i);
@@ -124,34 +131,90 @@ HWY_INLINE void search_exact(std::span<const KdReference> references, CutSearch&
     }
 }
 
+/// Coordinates of a box: lo.x lo.y lo.z hi.x, or lo.z hi.x hi.y hi.z, so that no vector reaches beyond it.
+using CoordinateTag = hn::CappedTag<float, 4>;
+using Coordinates = float[4];
+constexpr std::size_t kLow = 0, kHigh = 2;
+
+/// How many boxes begin and end in each of the bins along each axis.
+class Bins {
+public:
+    Bins(const Bounds3& held, const Vec3& per_unit) {
+        for (int axis = 0; axis < 3; ++axis) {
+            origin_low_[axis] = origin_high_[axis + 1] = held.lo[axis];
+            scale_low_[axis] = scale_high_[axis + 1] = per_unit[axis];
+        }
+    }
+
+    HWY_INLINE void count(std::span<const KdReference> references) {
+        const CoordinateTag d;
+        const hn::RebindToSigned<CoordinateTag> di;
+        alignas(16) std::int32_t begin[4], end[4];
+        for (const KdReference& reference : references) {
+            const float* const box = &reference.box.lo.x;
+            for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
+                hn::Store(hn::ConvertTo(di, depth(box + kLow, origin_low_, scale_low_, i)), di, begin + i);
+                // A box that ends at a plane is not above it: its end is in the bin before.
+                const auto at = depth(box + kHigh, origin_high_, scale_high_, i);
+                const auto whole = hn::ConvertTo(di, at);
+                const auto at_plane = hn::VecFromMask(di, hn::RebindMask(di, hn::Eq(hn::ConvertTo(d, whole), at)));
+                hn::Store(hn::Max(hn::Add(whole, at_plane), hn::Zero(di)), di, end + i);
+            }
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::int32_t last = end[axis + 1];
+                ++begins[axis][static_cast<std::size_t>(std::min(begin[axis], last))];
+                ++ends[axis][static_cast<std::size_t>(last)];
+            }
+        }
+    }
+
+    std::array<std::array<std::int32_t, kBins>, 3> begins{}, ends{};
+
+private:
+    static HWY_INLINE hn::Vec<CoordinateTag> depth(const float* box, const Coordinates& origin, const Coordinates& scale,
+                                                   std::size_t i) {
+        const CoordinateTag d;
+        const auto bins = hn::Mul(hn::Sub(hn::LoadU(d, box + i), hn::Load(d, origin + i)), hn::Load(d, scale + i));
+        return hn::Min(bins, hn::Set(d, float{kBins}));
+    }
+
+    alignas(16) Coordinates origin_low_{}, scale_low_{}, origin_high_{}, scale_high_{};
+};
+
+HWY_INLINE Bounds3 bounds_of(std::span<const KdReference> references) {
+    const CoordinateTag d;
+    alignas(16) Coordinates lo, hi;
+    for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
+        auto least = hn::Set(d, INFINITY), most = hn::Set(d, -INFINITY);
+        for (const KdReference& reference : references) {
+            const float* const box = &reference.box.lo.x;
+            least = hn::Min(least, hn::LoadU(d, box + kLow + i));
+            most = hn::Max(most, hn::LoadU(d, box + kHigh + i));
+        }
+        hn::Store(least, d, lo + i);
+        hn::Store(most, d, hi + i);
+    }
+    return {{lo[0], lo[1], lo[2]}, {hi[1], hi[2], hi[3]}};
+}
+
 /// Planes at equal distances over what the node holds, so that the outermost cut off empty space.
 HWY_INLINE void search_binned(std::span<const KdReference> references, CutSearch& search) {
-    Bounds3 held;
-    for (const KdReference& reference : references) held.extend(reference.box);
+    const Bounds3 held = bounds_of(references);
     const Vec3 per_unit = float{kBins} / (held.hi - held.lo);
-    std::array<std::array<std::int32_t, kBins>, 3> begins{}, ends{};
+    Bins bins(held, per_unit);
+    bins.count(references);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<int>(axis);
         // Axes too flat or too long to be divided in float are left alone.
         if (!(per_unit[a] > 0 && per_unit[a] < INFINITY)) continue;
-        const float origin = held.lo[a], scale = per_unit[a];
-        for (const KdReference& reference : references) {
-            // A box that ends at a plane is not above it; a flat one within the plane is below it.
-            const float to = std::min((reference.box.hi[a] - origin) * scale, float{kBins});
-            const int last = static_cast<int>(to);
-            const int end = std::max(last - (static_cast<float>(last) == to ? 1 : 0), 0);
-            const int begin = std::min(static_cast<int>((reference.box.lo[a] - origin) * scale), end);
-            ++begins[axis][static_cast<std::size_t>(begin)];
-            ++ends[axis][static_cast<std::size_t>(end)];
-        }
         Planes planes;
         planes.size = kBins + 1;
         planes.below[0] = 0;
         planes.above[0] = static_cast<std::int32_t>(references.size());
         for (std::size_t k = 0; k < kBins; ++k) {
-            planes.plane[k] = origin + static_cast<float>(k) / scale;
-            planes.below[k + 1] = planes.below[k] + begins[axis][k];
-            planes.above[k + 1] = planes.above[k] - ends[axis][k];
+            planes.plane[k] = held.lo[a] + static_cast<float>(k) / per_unit[a];
+            planes.below[k + 1] = planes.below[k] + bins.begins[axis][k];
+            planes.above[k + 1] = planes.above[k] - bins.ends[axis][k];
         }
         planes.plane[kBins] = held.hi[a];
         search.consider(a, planes);

@@ -12,10 +12,12 @@ import time
 
 rayuela = sys.argv[1]
 scenes = pathlib.Path(os.environ["RAYUELA_ASSETS"]) / "scenes"
+# Sanitizers make everything several times slower.
+PATIENCE = int(os.environ.get("RAYUELA_PATIENCE", 1))
 
 
 def run(*arguments):
-    done = subprocess.run([rayuela, *map(str, arguments)], capture_output=True, text=True, timeout=100)
+    done = subprocess.run([rayuela, *map(str, arguments)], capture_output=True, text=True, timeout=100 * PATIENCE)
     assert done.returncode == 0, f"{arguments}: status {done.returncode}\n{done.stderr}"
     return done
 
@@ -109,7 +111,7 @@ def test_interrupt_saves():
                                 "--size", "64x64"], stdout=subprocess.PIPE, text=True)
     time.sleep(3)
     process.send_signal(signal.SIGINT)
-    output, _ = process.communicate(timeout=20)
+    output, _ = process.communicate(timeout=20 * PATIENCE)
     assert process.returncode == 0 and "interrupted" in output
     assert read_pfm("i.pfm")[:2] == (64, 64)
 

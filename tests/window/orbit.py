@@ -7,7 +7,7 @@ Pictures of each step are left as PNG files in the current folder.
 import sys
 import time
 
-from support.window import Window, check, run, wait_for
+from support.window import PATIENCE, Window, check, run, wait_for
 
 SCENE = {
     "rayuela": 1,
@@ -48,7 +48,8 @@ def drive(program, screen, folder):
                    for row in part for i in range(0, len(row), 3)) > 200
 
     window.wait_for_picture("1-opened", "the red box is seen", red)
-    time.sleep(3)
+    # What noise is left then stays below what turning the view changes.
+    time.sleep(3 * PATIENCE)
     first = image_part(screen.pixels())
 
     window.drag(MIDDLE, (160, 40))
