@@ -58,7 +58,10 @@ add_library(rayuela_offscreen_gl INTERFACE)
 rayuela_pkg(rayuela_osmesa osmesa)
 rayuela_pkg(rayuela_egl egl)
 if(TARGET rayuela_osmesa)
-    target_link_libraries(rayuela_offscreen_gl INTERFACE rayuela_osmesa)
+    # Only its header: it is loaded at run time, when something is drawn off-screen.
+    target_include_directories(rayuela_offscreen_gl SYSTEM INTERFACE
+                               $<TARGET_PROPERTY:PkgConfig::rayuela_osmesa,INTERFACE_INCLUDE_DIRECTORIES>)
+    target_link_libraries(rayuela_offscreen_gl INTERFACE ${CMAKE_DL_LIBS})
     target_compile_definitions(rayuela_offscreen_gl INTERFACE RAYUELA_HAS_OSMESA=1)
 endif()
 if(TARGET rayuela_egl)

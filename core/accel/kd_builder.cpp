@@ -145,7 +145,8 @@ private:
     }
 
     std::optional<KdCut> median_cut(std::span<const KdReference> references, const NodeTask& task) const {
-        const auto owned = std::count_if(references.begin(), references.end(), [](const auto& r) { return r.owned != 0; });
+        const auto owned =
+            std::count_if(references.begin(), references.end(), [](const auto& r) { return r.owned != 0; });
         if (owned <= input_.leaf_size) return {};
         std::vector<std::uint32_t> scratch;
         return find_median_cut(references, task.cell, input_.bounds, scratch);

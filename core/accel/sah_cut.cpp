@@ -171,8 +171,8 @@ public:
     std::array<std::array<std::int32_t, kBins>, 3> begins{}, ends{};
 
 private:
-    static HWY_INLINE hn::Vec<CoordinateTag> depth(const float* box, const Coordinates& origin, const Coordinates& scale,
-                                                   std::size_t i) {
+    static HWY_INLINE hn::Vec<CoordinateTag> depth(const float* box, const Coordinates& origin,
+                                                   const Coordinates& scale, std::size_t i) {
         const CoordinateTag d;
         const auto bins = hn::Mul(hn::Sub(hn::LoadU(d, box + i), hn::Load(d, origin + i)), hn::Load(d, scale + i));
         return hn::Min(bins, hn::Set(d, float{kBins}));
