@@ -144,11 +144,10 @@ bool PathTracer::varies(const PackedMaterial& material) const {
     return kVaries && (material.textured || !options_.shortcuts.ready_materials);
 }
 
-/// Of a surface to be shaded in a MatteBlock.
+/// Of a surface to be shaded in a MatteBlock: of a material that has `matte`.
 template <bool kVaries>
-std::optional<Color> PathTracer::matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const {
-    if (!material.matte || !options_.shortcuts.matte_blocks) return std::nullopt;
-    return varies<kVaries>(material) ? std::get<Diffuse>(material.material).bsdf(point.uv).albedo : material.matte;
+Color PathTracer::matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const {
+    return varies<kVaries>(material) ? std::get<Diffuse>(material.material).bsdf(point.uv).albedo : *material.matte;
 }
 
 template <bool kVaries>
@@ -173,8 +172,8 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
         batch.counts.textured_hits += varies<kVaries>(material);
-        if (const auto albedo = matte_albedo<kVaries>(material, batch.points[i]); albedo && !aims(state, bounce)) {
-            if (!last) add_matte(batch, i, *albedo, bounce);
+        if (material.matte && options_.shortcuts.matte_blocks && !aims(state, bounce)) {
+            if (!last) add_matte(batch, i, matte_albedo<kVaries>(material, batch.points[i]), bounce);
             continue;
         }
         const Interaction& at =

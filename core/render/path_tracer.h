@@ -78,7 +78,7 @@ private:
     template <bool kVaries>
     bool varies(const PackedMaterial& material) const;
     template <bool kVaries>
-    std::optional<Color> matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const;
+    Color matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const;
     void add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const;
     void shade_matte(PathBatch& batch, int bounce) const;
     MatteTask matte_task(int bounce) const;
