@@ -1,7 +1,5 @@
 #include "core/accel/sphere_points.h"
 
-#include "core/accel/surface_rounding.h"
-
 #include <algorithm>
 
 // The kernels need no more than these.
@@ -11,26 +9,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/accel/lane_types-inl.h"
+#include "core/accel/double_axes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
-
-constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
-
-struct DoubleAxes {
-    Doubles x, y, z;
-};
-HWY_INLINE DoubleAxes operator-(const DoubleAxes& a, const DoubleAxes& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE DoubleAxes operator*(Doubles s, const DoubleAxes& v) {
-    return {hn::Mul(s, v.x), hn::Mul(s, v.y), hn::Mul(s, v.z)};
-}
-/// As glm adds it up.
-HWY_INLINE Doubles dot(const DoubleAxes& a, const DoubleAxes& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
 
 /// rayuela::squared_distance_excess, the same to the bit.
 HWY_INLINE Doubles squared_distance_excess(const DoubleAxes& a, const DoubleAxes& b, Doubles r) {
@@ -106,25 +88,8 @@ HWY_INLINE void points_of(const SphereD* spheres, std::span<const SphereHit> fou
                        hn::Div(from_center.z, distance)};
     const Doubles height = hn::Div(squared_distance_excess(along, center, radius), hn::Add(distance, radius));
     const DoubleAxes p = along - height * n;
-    const DoubleAxes ng = hn::Div(hn::Set(dd, 1), hn::Sqrt(dot(n, n))) * n;
-    const Doubles size = hn::Max(hn::Abs(p.x), hn::Max(hn::Abs(p.y), hn::Abs(p.z)));
-
-    alignas(64) float rows[9][kDoubles];
-    const auto put = [&](const DoubleAxes& v, std::size_t row) HWY_ATTR {
-        hn::Store(hn::DemoteTo(df, v.x), df, rows[row]);
-        hn::Store(hn::DemoteTo(df, v.y), df, rows[row + 1]);
-        hn::Store(hn::DemoteTo(df, v.z), df, rows[row + 2]);
-    };
-    const Doubles own = hn::Add(hn::Mul(hn::Set(dd, kSurfaceDoubleError), size), hn::Set(dd, kSurfaceSmallestError));
-    const auto error = [&](Doubles x)
-                           HWY_ATTR { return hn::Add(hn::Mul(hn::Abs(x), hn::Set(dd, kSurfaceRounding)), own); };
-    put(p, 0);
-    put({error(p.x), error(p.y), error(p.z)}, 3);
-    put(ng, 6);
-    for (std::size_t k = 0; k < found.size(); ++k) {
-        const auto vec = [&](std::size_t row) { return Vec3(rows[row][k], rows[row + 1][k], rows[row + 2][k]); };
-        points[found[k].ray] = {.p = vec(0), .p_error = vec(3), .ng = vec(6), .ns = vec(6), .uv = Vec2(0)};
-    }
+    store_points(
+        p, max_abs(p), normalize(n), found.size(), [&](std::size_t k) { return found[k].ray; }, points);
 }
 
 HWY_ATTR void points_of_all(std::span<const SphereD> spheres, std::span<const SphereHit> found,

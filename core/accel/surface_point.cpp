@@ -1,5 +1,6 @@
 #include "core/accel/surface_point.h"
 
+#include "core/accel/flat_points.h"
 #include "core/accel/sphere_points.h"
 #include "core/accel/surface_rounding.h"
 #include "core/accel/traced_object.h"
@@ -27,10 +28,8 @@ Vec3 unit(const Vec3d& v) {
     return Vec3(glm::normalize(v));
 }
 
-/// How far a point at `p` is kept from the edges of its surface: so far that rounding to float does not take it beyond a
-/// wall that meets the surface there, and lets light into a sealed room.
 double margin_at(const Vec3d& p) {
-    return 3 * double{kUnitRoundoff} * max_abs(p);
+    return kEdgeMargin * max_abs(p);
 }
 
 /// The way from a shape's own space to the world and back. Points and normals of a shape that has been taken to the world
@@ -167,64 +166,58 @@ struct SurfaceOf<Box> {
     }
 };
 
-/// A triangle in the world.
-struct Flat {
-    Vec3d a, e1, e2;
-    double extent, size;
-
-    Flat(const Vec3d& corner, const Vec3d& b, const Vec3d& c)
-        : a(corner),
-          e1(b - a),
-          e2(c - a),
-          extent(glm::max(max_abs(e1), max_abs(e2))),
-          size(max_abs(a) + max_abs(b) + max_abs(c)) {}
-
-    /// With positive `sign` counter-clockwise seen from the front.
-    Vec3d normal(double sign) const { return sign * glm::cross(e1, e2); }
-    /// Moved towards the centroid by as much as the margin asks for in a triangle whose height is an eighth of its extent.
-    Vec3d point(double b1, double b2) const {
-        const double inward = glm::min(1.0, 24 * margin_at(a + b1 * e1 + b2 * e2) / extent);
-        return a + glm::mix(b1, 1.0 / 3, inward) * e1 + glm::mix(b2, 1.0 / 3, inward) * e2;
-    }
-};
-
 /// Corners are taken to the world, and a transform that mirrors turns them round.
 double front_sign(const Affine& to_world) {
     return glm::determinant(glm::dmat3(to_world.linear)) < 0 ? -1 : 1;
 }
 
+/// A triangle of these corners, hit at b1, b2.
+FlatHit flat_hit(const Vec3& a, const Vec3& b, const Vec3& c, double b1, double b2, double sign) {
+    return {.a = Vec3d(a), .b = Vec3d(b), .c = Vec3d(c), .b1 = b1, .b2 = b2, .sign = sign};
+}
+
+/// Moved from the edges towards the centroid.
+Surface flat_surface(const FlatHit& hit) {
+    const Vec3d e1 = hit.b - hit.a, e2 = hit.c - hit.a;
+    const double margin = margin_at(hit.a + hit.b1 * e1 + hit.b2 * e2);
+    const double inward = glm::min(1.0, kTriangleMargins * margin / glm::max(max_abs(e1), max_abs(e2)));
+    return {.p = hit.a + glm::mix(hit.b1, 1.0 / 3, inward) * e1 + glm::mix(hit.b2, 1.0 / 3, inward) * e2,
+            .size = max_abs(hit.a) + max_abs(hit.b) + max_abs(hit.c) + hit.offset,
+            .ng = unit(hit.sign * glm::cross(e1, e2))};
+}
+
+// Surfaces of triangles have `flat`, from which a point follows, and say the rest once it is there.
+
 template <>
 struct SurfaceOf<Triangle> {
-    Flat flat;
-    Vec3 ng;
+    TriangleCorners corners;
+    double sign;
 
-    SurfaceOf(const TriangleCorners& c, double sign)
-        : flat(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2])), ng(unit(flat.normal(sign))) {}
     SurfaceOf(const Triangle& own, const Affine& to_world)
-        : SurfaceOf(world_triangle(own, to_world), front_sign(to_world)) {}
+        : corners(world_triangle(own, to_world)), sign(front_sign(to_world)) {}
 
-    Surface at(const Ray&, const Hit& hit, bool) const {
-        return {.p = flat.point(hit.u, hit.v), .size = flat.size, .ng = ng, .uv = Vec2(hit.u, hit.v)};
-    }
+    FlatHit flat(const Hit& hit) const { return flat_hit(corners[0], corners[1], corners[2], hit.u, hit.v, sign); }
+    Vec3 shading_normal(const Hit&) const { return Vec3(0); }
+    Vec2 uv(const Hit& hit) const { return {hit.u, hit.v}; }
 };
 
 /// The half that was hit decides the plane: rounded corners need not lie in one.
 template <>
 struct SurfaceOf<Quad> {
-    SurfaceOf<Triangle> first, second;
+    QuadCorners corners;
+    double sign;
 
-    SurfaceOf(const QuadCorners& c, double sign) : first({c[0], c[1], c[2]}, sign), second({c[0], c[2], c[3]}, sign) {}
-    SurfaceOf(const Quad& own, const Affine& to_world) : SurfaceOf(world_quad(own, to_world), front_sign(to_world)) {}
+    SurfaceOf(const Quad& own, const Affine& to_world)
+        : corners(world_quad(own, to_world)), sign(front_sign(to_world)) {}
 
-    Surface at(const Ray&, const Hit& hit, bool) const {
+    FlatHit flat(const Hit& hit) const {
         const double u = hit.u, v = hit.v;
-        const bool in_first = u >= v;
-        const SurfaceOf<Triangle>& half = in_first ? first : second;
-        return {.p = in_first ? half.flat.point(u - v, v) : half.flat.point(u, v - u),
-                .size = half.flat.size,
-                .ng = half.ng,
-                .uv = Vec2(hit.u, hit.v)};
+        const bool first = u >= v;
+        return flat_hit(corners[0], corners[first ? 1 : 2], corners[first ? 2 : 3], first ? u - v : u, first ? v : v - u,
+                        sign);
     }
+    Vec3 shading_normal(const Hit&) const { return Vec3(0); }
+    Vec2 uv(const Hit& hit) const { return {hit.u, hit.v}; }
 };
 
 template <>
@@ -239,26 +232,24 @@ struct SurfaceOf<std::shared_ptr<const TriangleMesh>> {
           sign(front_sign(to_world)),
           offset(max_abs(Vec3d(to_world.translation))) {}
 
-    Surface at(const Ray&, const Hit& hit, bool with_uv) const {
-        const glm::uvec3 t = mesh->triangles[hit.primitive];
+    FlatHit flat(const Hit& hit) const {
+        const glm::uvec3& t = mesh->triangles[hit.primitive];
         const auto corner = [&](std::uint32_t i) { return placement.point(Vec3d(mesh->positions[i])); };
-        const Flat flat(corner(t.x), corner(t.y), corner(t.z));
-        Surface surface{.p = flat.point(hit.u, hit.v), .size = flat.size + offset, .ng = unit(flat.normal(sign))};
-        if (!mesh->normals.empty()) surface.ns = shading_normal(t, hit);
-        if (with_uv) surface.uv = uv(t, hit);
-        return surface;
+        return {corner(t.x), corner(t.y), corner(t.z), hit.u, hit.v, sign, offset};
     }
-
-    /// Zero where the interpolated normal has no direction.
-    Vec3 shading_normal(const glm::uvec3& t, const Hit& hit) const {
+    /// Zero where there is none, or the interpolated normal has no direction.
+    Vec3 shading_normal(const Hit& hit) const {
+        if (mesh->normals.empty()) return Vec3(0);
+        const glm::uvec3& t = mesh->triangles[hit.primitive];
         const double b1 = hit.u, b2 = hit.v;
         const auto normal = [&](std::uint32_t i) { return Vec3d(mesh->normals[i]); };
         const Vec3d n = placement.normal((1 - b1 - b2) * normal(t.x) + b1 * normal(t.y) + b2 * normal(t.z));
         const double length = glm::length(n);
         return length > 0 && std::isfinite(length) ? Vec3(n / length) : Vec3(0);
     }
-    Vec2 uv(const glm::uvec3& t, const Hit& hit) const {
+    Vec2 uv(const Hit& hit) const {
         if (mesh->uvs.empty()) return {hit.u, hit.v};
+        const glm::uvec3& t = mesh->triangles[hit.primitive];
         const auto b0 = static_cast<float>(1 - double{hit.u} - double{hit.v});
         return b0 * mesh->uvs[t.x] + hit.u * mesh->uvs[t.y] + hit.v * mesh->uvs[t.z];
     }
@@ -274,15 +265,28 @@ struct SurfacesOf<std::variant<Shapes...>> {
 constexpr std::size_t kMeshKind = std::variant_size_v<TracedShape> - 1;
 static_assert(std::is_same_v<std::variant_alternative_t<kMeshKind, TracedShape>, std::shared_ptr<const TriangleMesh>>);
 
-SurfacePoint rounded(const Surface& surface) {
-    SurfacePoint point;
+template <typename Of>
+constexpr bool kFlat = requires(const Of& surface, const Hit& hit) { surface.flat(hit); };
+
+template <typename Of>
+Surface surface_at(const Of& surface, const Ray& ray, const Hit& hit, bool with_uv) {
+    if constexpr (kFlat<Of>) {
+        Surface result = flat_surface(surface.flat(hit));
+        result.ns = surface.shading_normal(hit);
+        if (with_uv) result.uv = surface.uv(hit);
+        return result;
+    } else {
+        return surface.at(ray, hit, with_uv);
+    }
+}
+
+void write_rounded(const Surface& surface, SurfacePoint& point) {
     point.p = Vec3(surface.p);
     point.p_error =
         Vec3(glm::abs(surface.p) * kSurfaceRounding + (kSurfaceDoubleError * surface.size + kSurfaceSmallestError));
     point.ng = surface.ng;
     point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;
     point.uv = surface.uv;
-    return point;
 }
 
 }  // namespace
@@ -292,12 +296,11 @@ struct Surfaces::Tables {
     SurfacesOf<TracedShape>::type kinds;
     std::vector<SphereD> spheres;  ///< Those of the first kind again.
 
-    /// The surface of the kind, one of the alternatives of TracedShape, with the index.
-    template <std::size_t kKind = 0>
-    Surface at(const Entry& entry, const Ray& ray, const Hit& hit, bool with_uv) const {
-        if (entry.kind == kKind) return std::get<kKind>(kinds)[entry.index].at(ray, hit, with_uv);
-        if constexpr (kKind + 1 < std::variant_size_v<TracedShape>) return at<kKind + 1>(entry, ray, hit, with_uv);
-        return {};
+    /// What `function` says of the surface of the kind, one of the alternatives of TracedShape, with the index.
+    template <std::size_t kKind = 0, typename Function>
+    void with(const Entry& entry, Function&& function) const {
+        if (entry.kind == kKind) return function(std::get<kKind>(kinds)[entry.index]);
+        if constexpr (kKind + 1 < std::variant_size_v<TracedShape>) with<kKind + 1>(entry, function);
     }
 };
 
@@ -307,14 +310,17 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::m
         std::visit(
             [&]<typename Shape>(const Shape& shape) {
                 auto& table = std::get<std::vector<SurfaceOf<Shape>>>(tables_->kinds);
-                entries_.push_back({static_cast<std::uint32_t>(instance.shape.index()),
-                                    static_cast<std::uint32_t>(table.size()), false});
+                entries_.push_back({.kind = static_cast<std::uint32_t>(instance.shape.index()),
+                                    .index = static_cast<std::uint32_t>(table.size())});
                 table.emplace_back(shape, instance.to_world);
+                entries_.back().flat = kFlat<SurfaceOf<Shape>>;
                 has_meshes_ |= instance.shape.index() == kMeshKind;
                 if constexpr (std::is_same_v<Shape, Sphere>) {
                     tables_->spheres.push_back(table.back().sphere);
-                    entries_.back().together = table.back().placement.in_world();
+                    entries_.back().sphere = table.back().placement.in_world();
                 }
+                if constexpr (std::is_same_v<Shape, std::shared_ptr<const TriangleMesh>>)
+                    entries_.back().interpolates = !shape->normals.empty();
             },
             instance.shape);
     }
@@ -322,52 +328,80 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::m
 
 Surfaces::~Surfaces() = default;
 
-/// Null for other shapes.
-const TriangleMesh* Surfaces::mesh_of(const Hit& hit) const {
-    if (!hit.valid() || entries_[hit.object].kind != kMeshKind) return nullptr;
-    return std::get<kMeshKind>(tables_->kinds)[entries_[hit.object].index].mesh.get();
-}
-
-/// The vertices can be asked for only once the triangle is there.
-void Surfaces::prefetch_meshes(std::span<const Hit> hits, std::size_t i) const {
-    constexpr std::size_t kTriangle = 8, kVertices = 4;
-    if (i + kTriangle >= hits.size()) return;
-    if (const TriangleMesh* mesh = mesh_of(hits[i + kTriangle]))
-        __builtin_prefetch(&mesh->triangles[hits[i + kTriangle].primitive]);
-    const TriangleMesh* mesh = mesh_of(hits[i + kVertices]);
-    if (!mesh) return;
-    const glm::uvec3 t = mesh->triangles[hits[i + kVertices].primitive];
-    for (int corner = 0; corner < 3; ++corner) {
-        __builtin_prefetch(&mesh->positions[t[corner]]);
-        if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);
-    }
+/// The mesh that hit number i is of; null for other shapes and where there is no such hit.
+const TriangleMesh* Surfaces::mesh_of(std::span<const Hit> hits, std::size_t i) const {
+    if (i >= hits.size() || !hits[i].valid() || entries_[hits[i].object].kind != kMeshKind) return nullptr;
+    return std::get<kMeshKind>(tables_->kinds)[entries_[hits[i].object].index].mesh.get();
 }
 
 SurfacePoint Surfaces::point(const Ray& ray, const Hit& hit, bool with_uv) const {
-    return rounded(tables_->at(entries_[hit.object], ray, hit, with_uv));
+    SurfacePoint point;
+    tables_->with(entries_[hit.object],
+                  [&](const auto& surface) { write_rounded(surface_at(surface, ray, hit, with_uv), point); });
+    return point;
+}
+
+/// What `flat_points` leaves out.
+void Surfaces::add_details(const Hit& hit, bool with_uv, SurfacePoint& point) const {
+    tables_->with(entries_[hit.object], [&]<typename Of>(const Of& surface) {
+        if constexpr (kFlat<Of>) {
+            const Vec3 ns = surface.shading_normal(hit);
+            if (ns != Vec3(0)) point.ns = ns;
+            if (with_uv) point.uv = surface.uv(hit);
+        }
+    });
 }
 
 void Surfaces::points(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
                       std::span<SurfacePoint> points) const {
-    constexpr std::size_t kTogether = 64;
-    SphereHit spheres[kTogether];
-    std::size_t count = 0;
+    SphereHit spheres[FlatBlock::kSize];
+    std::size_t sphere_count = 0;
+    FlatBlock flats;
+    const auto wants_uv = [&](std::size_t i) { return !with_uv.empty() && with_uv[i] != 0; };
     const auto finish_spheres = [&] {
-        sphere_points(tables_->spheres, std::span(spheres, count), rays, hits, points);
-        count = 0;
+        sphere_points(tables_->spheres, std::span(spheres, sphere_count), rays, hits, points);
+        sphere_count = 0;
     };
+    const auto finish_flats = [&] {
+        flat_points(flats, points);
+        for (std::size_t k = 0; k < flats.size; ++k) {
+            const std::uint32_t i = flats.ray[k];
+            if (wants_uv(i) || entries_[hits[i].object].interpolates) add_details(hits[i], wants_uv(i), points[i]);
+        }
+        flats.size = 0;
+    };
+    // Triangles of meshes are asked for ahead, and their vertices once these are there. Not in a function of its own: as it
+    // would change nothing, the compiler would leave it out.
+    constexpr std::size_t kTriangle = 16, kVertices = 8;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (has_meshes_) prefetch_meshes(hits, i);
+        if (has_meshes_) {
+            if (const TriangleMesh* mesh = mesh_of(hits, i + kTriangle))
+                __builtin_prefetch(&mesh->triangles[hits[i + kTriangle].primitive]);
+            if (const TriangleMesh* mesh = mesh_of(hits, i + kVertices)) {
+                const glm::uvec3& t = mesh->triangles[hits[i + kVertices].primitive];
+                for (int corner = 0; corner < 3; ++corner) {
+                    __builtin_prefetch(&mesh->positions[t[corner]]);
+                    if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);
+                }
+            }
+        }
         if (!hits[i].valid()) continue;
         const Entry& entry = entries_[hits[i].object];
-        const bool uv = !with_uv.empty() && with_uv[i] != 0;
-        if (entry.together && !uv) {
-            spheres[count++] = {static_cast<std::uint32_t>(i), entry.index};
-            if (count == kTogether) finish_spheres();
+        if (entry.flat) {
+            tables_->with(entry, [&]<typename Of>(const Of& surface) {
+                if constexpr (kFlat<Of>) flats.push(surface.flat(hits[i]), i);
+            });
+            if (flats.size == FlatBlock::kSize) finish_flats();
+        } else if (entry.sphere && !wants_uv(i)) {
+            spheres[sphere_count++] = {static_cast<std::uint32_t>(i), entry.index};
+            if (sphere_count == std::size(spheres)) finish_spheres();
         } else {
-            points[i] = point(rays[i], hits[i], uv);
+            tables_->with(entry, [&](const auto& surface) {
+                write_rounded(surface_at(surface, rays[i], hits[i], wants_uv(i)), points[i]);
+            });
         }
     }
+    finish_flats();
     finish_spheres();
 }
 

@@ -43,12 +43,14 @@ public:
 
 private:
     struct Tables;
-    const TriangleMesh* mesh_of(const Hit& hit) const;
-    void prefetch_meshes(std::span<const Hit> hits, std::size_t i) const;
+    const TriangleMesh* mesh_of(std::span<const Hit> hits, std::size_t i) const;
+    void add_details(const Hit& hit, bool with_uv, SurfacePoint& point) const;
     /// Where in the tables an instance is.
     struct Entry {
         std::uint32_t kind, index;
-        bool together;  ///< Worked out many at once, unless uv are asked for.
+        bool flat = false;          ///< Made of triangles, that are worked out many at once.
+        bool sphere = false;        ///< So are these, unless uv are asked for.
+        bool interpolates = false;  ///< The shading normal.
     };
     std::vector<Entry> entries_;
     std::unique_ptr<Tables> tables_;

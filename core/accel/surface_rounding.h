@@ -11,4 +11,10 @@ inline constexpr double kSurfaceRounding = 1.01 * double{kUnitRoundoff};
 inline constexpr double kSurfaceDoubleError = 0x1p-36;
 inline constexpr double kSurfaceSmallestError = 0x1p-100;
 
+/// A point p is kept from the edges of its surface by this fraction of its numbers: so far that rounding to float does not
+/// take it beyond a wall that meets the surface there, and lets light into a sealed room.
+inline constexpr double kEdgeMargin = 3 * double{kUnitRoundoff};
+/// In a triangle it moves towards the centroid, by as many margins as one needs whose height is an eighth of its extent.
+inline constexpr double kTriangleMargins = 24;
+
 }  // namespace rayuela
