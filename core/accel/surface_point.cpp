@@ -213,8 +213,8 @@ struct SurfaceOf<Quad> {
     FlatHit flat(const Hit& hit) const {
         const double u = hit.u, v = hit.v;
         const bool first = u >= v;
-        return flat_hit(corners[0], corners[first ? 1 : 2], corners[first ? 2 : 3], first ? u - v : u, first ? v : v - u,
-                        sign);
+        return flat_hit(corners[0], corners[first ? 1 : 2], corners[first ? 2 : 3], first ? u - v : u,
+                        first ? v : v - u, sign);
     }
     Vec3 shading_normal(const Hit&) const { return Vec3(0); }
     Vec2 uv(const Hit& hit) const { return {hit.u, hit.v}; }
@@ -266,7 +266,9 @@ constexpr std::size_t kMeshKind = std::variant_size_v<TracedShape> - 1;
 static_assert(std::is_same_v<std::variant_alternative_t<kMeshKind, TracedShape>, std::shared_ptr<const TriangleMesh>>);
 
 template <typename Of>
-constexpr bool kFlat = requires(const Of& surface, const Hit& hit) { surface.flat(hit); };
+constexpr bool kFlat = requires(const Of& surface, const Hit& hit) {
+    surface.flat(hit);
+};
 
 template <typename Of>
 Surface surface_at(const Of& surface, const Ray& ray, const Hit& hit, bool with_uv) {

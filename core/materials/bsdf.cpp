@@ -27,15 +27,17 @@ T of_emission(const Material& material, T otherwise, Function&& function) {
 }  // namespace
 
 BsdfValue Bsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
-    const BsdfValue f = std::visit([&](const auto& lobes) { return lobes.evaluate(wo, wi); }, lobes_);
-    return std::isfinite(f.pdf) ? f : BsdfValue{};
+    BsdfValue f = std::visit([&](const auto& lobes) { return lobes.evaluate(wo, wi); }, lobes_);
+    if (!std::isfinite(f.pdf)) f = {};
+    return f;
 }
 
 std::optional<BsdfSample> Bsdf::sample(const Vec3& wo, float u_lobe, const Vec2& u) const {
-    if (!(std::abs(wo.z) > 0)) return std::nullopt;
-    std::optional<BsdfSample> s = std::visit([&](const auto& lobes) { return lobes.sample(wo, u_lobe, u); }, lobes_);
+    using Sample = std::optional<BsdfSample>;
+    Sample s = std::abs(wo.z) > 0 ? std::visit([&](const auto& lobes) { return lobes.sample(wo, u_lobe, u); }, lobes_)
+                                  : Sample();
     // A density of 0, infinity or NaN comes from directions at the very edge of a lobe: rounding took them outside.
-    if (!s || !(s->pdf > 0 && s->pdf < INFINITY) || !is_finite(s->wi) || is_black(s->weight)) return std::nullopt;
+    if (s && (!(s->pdf > 0 && s->pdf < INFINITY) || !is_finite(s->wi) || is_black(s->weight))) s.reset();
     return s;
 }
 

@@ -55,9 +55,9 @@ std::optional<BsdfSample> DielectricBsdf::sample(const Vec3& wo, float u_lobe, c
     Vec3 wi = reflects ? reflect(o, m) : refract(o, m, eta);
     if (reflects != (wi.z > 0)) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;
-    if (smooth) return BsdfSample{wi, tint, reflects ? fresnel : 1 - fresnel, true, reflects ? 1 : eta};
+    if (smooth) return mirrored(wi, tint, reflects ? fresnel : 1 - fresnel, reflects ? 1 : eta);
     const BsdfValue f = evaluate(wo, wi);
-    return BsdfSample{wi, f.value / f.pdf, f.pdf, false};
+    return scattered(wi, f.value / f.pdf, f.pdf);
 }
 
 }  // namespace rayuela

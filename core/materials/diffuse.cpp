@@ -19,7 +19,7 @@ std::optional<BsdfSample> DiffuseBsdf::sample(const Vec3& wo, float, const Vec2&
     if (is_black(albedo)) return std::nullopt;
     Vec3 wi = sample_cosine_hemisphere(u);
     if (wo.z < 0) wi.z = -wi.z;
-    return BsdfSample{wi, albedo, kInvPi * std::abs(wi.z), false};
+    return scattered(wi, albedo, kInvPi * std::abs(wi.z));
 }
 
 }  // namespace rayuela

@@ -41,7 +41,7 @@ BsdfValue MetalBsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
 
 std::optional<BsdfSample> MetalBsdf::sample(const Vec3& wo, float u_lobe, const Vec2& u) const {
     if (is_black(reflectance)) return std::nullopt;
-    if (ggx.is_smooth()) return BsdfSample{Vec3(-wo.x, -wo.y, wo.z), reflectance, 1, true};
+    if (ggx.is_smooth()) return mirrored(Vec3(-wo.x, -wo.y, wo.z), reflectance, 1);
 
     const Vec3 o = upper(wo);
     const bool from_facets = !multiscatter || u_lobe < facet_probability(*this, ggx_albedo(o.z, ggx.alpha).total);
@@ -49,7 +49,7 @@ std::optional<BsdfSample> MetalBsdf::sample(const Vec3& wo, float u_lobe, const 
     if (wi.z <= 0) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;
     const BsdfValue f = evaluate(wo, wi);
-    return BsdfSample{wi, f.value / f.pdf, f.pdf, false};
+    return scattered(wi, f.value / f.pdf, f.pdf);
 }
 
 }  // namespace rayuela

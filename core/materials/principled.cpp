@@ -133,9 +133,9 @@ std::optional<BsdfSample> PrincipledBsdf::sample(const Vec3& wo, float u_lobe, c
     }
     if (!(wi.z > 0)) return std::nullopt;
     if (passes != (wo.z < 0)) wi.z = -wi.z;
-    if (mirrors) return BsdfSample{wi, split.albedo[lobe] / split.probability[lobe], split.probability[lobe], true};
+    if (mirrors) return mirrored(wi, split.albedo[lobe] / split.probability[lobe], split.probability[lobe]);
     const BsdfValue f = evaluate(wo, wi);
-    return BsdfSample{wi, f.value / f.pdf, f.pdf, false};
+    return scattered(wi, f.value / f.pdf, f.pdf);
 }
 
 }  // namespace rayuela

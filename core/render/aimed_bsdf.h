@@ -32,26 +32,27 @@ public:
 
     /// As Bsdf::sample.
     std::optional<BsdfSample> sample(float u_lobe, const Vec2& u) const {
-        if (!view_) return at_.bsdf().sample(at_.wo_local, u_lobe, u);
-        BsdfSample s;
-        if (u_lobe < kAimed) {
-            s.wi = at_.frame.to_local(view_->sample(u_lobe / kAimed, u));
-        } else {
-            const auto scattered = at_.bsdf().sample(at_.wo_local, (u_lobe - kAimed) / (1 - kAimed), u);
-            if (!scattered) return std::nullopt;
-            s = *scattered;
-            s.pdf *= 1 - kAimed;
-            s.weight /= 1 - kAimed;
-            if (s.specular) return s;
-        }
-        const BsdfValue f = evaluate(s.wi, at_.frame.to_world(s.wi));
-        s.pdf = f.pdf;
-        s.weight = f.value / f.pdf;
-        if (!(s.pdf > 0 && s.pdf < kInfinity) || is_black(s.weight)) return std::nullopt;
-        return s;
+        return view_ ? sample_mixture(u_lobe, u) : at_.bsdf().sample(at_.wo_local, u_lobe, u);
     }
 
 private:
+    std::optional<BsdfSample> sample_mixture(float u_lobe, const Vec2& u) const {
+        std::optional<BsdfSample> s =
+            u_lobe < kAimed ? scattered(at_.frame.to_local(view_->sample(u_lobe / kAimed, u)), Color(0), 0)
+                            : at_.bsdf().sample(at_.wo_local, (u_lobe - kAimed) / (1 - kAimed), u);
+        if (!s) return s;
+        if (s->specular) {
+            s->pdf *= 1 - kAimed;
+            s->weight /= 1 - kAimed;
+            return s;
+        }
+        const BsdfValue f = evaluate(s->wi, at_.frame.to_world(s->wi));
+        s->pdf = f.pdf;
+        s->weight = f.value / f.pdf;
+        if (!(s->pdf > 0 && s->pdf < kInfinity) || is_black(s->weight)) s.reset();
+        return s;
+    }
+
     static constexpr float kAimed = 0.5f;
 
     const Interaction& at_;

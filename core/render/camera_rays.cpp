@@ -55,13 +55,25 @@ CameraRays::CameraRays(const Camera& camera, double aspect)
     down_ = -2 * half_height * up;
 }
 
-Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
+void CameraRays::write_ray(const Vec2& position, const Vec2& lens, Ray& ray) const {
+    ray.t_min = 0;
+    ray.t_max = kInfinity;
     const Vec3d direction = corner_ + double{position.x} * across_ + double{position.y} * down_;
-    if (lens_radius_ == 0) return {.origin = origin_, .direction = Vec3(glm::normalize(direction))};
+    if (lens_radius_ == 0) {
+        ray.origin = origin_;
+        ray.direction = Vec3(glm::normalize(direction));
+        return;
+    }
     // Relative to the lens centre: the distance to the focus plane is not lost in the camera's coordinates.
     const Vec3d offset = lens_radius_ * (double{lens.x} * right_ + double{lens.y} * up_);
-    return {.origin = Vec3(Vec3d(origin_) + offset),
-            .direction = Vec3(glm::normalize(focus_distance_ * direction - offset))};
+    ray.origin = Vec3(Vec3d(origin_) + offset);
+    ray.direction = Vec3(glm::normalize(focus_distance_ * direction - offset));
+}
+
+Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
+    Ray ray;
+    write_ray(position, lens, ray);
+    return ray;
 }
 
 std::optional<CameraRays::View> CameraRays::view(const Vec3& p, const Vec2& lens) const {

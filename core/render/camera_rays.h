@@ -17,6 +17,8 @@ public:
     /// Through `position` of the image, (0, 0) its upper left and (1, 1) its lower right corner, from the point `lens` of
     /// the unit disc. The direction is unit.
     Ray ray(const Vec2& position, const Vec2& lens) const;
+    /// The same where it is to be: a whole that is copied has to wait for its parts to be stored.
+    void write_ray(const Vec2& position, const Vec2& lens, Ray& ray) const;
     /// A point as the camera sees it.
     struct View {
         Vec3 origin{0};    ///< Of the ray, on the lens.

@@ -37,9 +37,11 @@ public:
     /// Whether seen from `wi` the shading normal is the same.
     bool same_frame(const Vec3& wi) const { return shading_normal(wi) == frame.n; }
     Vec3 ray_origin(const Vec3& wi) const { return offset_ray_origin(point.p, point.p_error, point.ng, wi); }
-    LightReceiver receiver() const {
-        if (material.transmits) return {point.p, Vec3(0)};
-        return {point.p, wo_local.z < 0 ? -frame.n : frame.n};
+    LightReceiver receiver() const { return {point.p, receiver_normal()}; }
+    /// LightReceiver::n.
+    Vec3 receiver_normal() const {
+        if (material.transmits) return Vec3(0);
+        return wo_local.z < 0 ? -frame.n : frame.n;
     }
     /// Of the angle between `w` and the geometric normal, not negative.
     float cosine(const Vec3& w) const { return std::abs(glm::dot(w, point.ng)); }

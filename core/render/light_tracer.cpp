@@ -1,5 +1,6 @@
 #include "core/render/light_tracer.h"
 
+#include "core/math/sampler_batch.h"
 #include "core/math/sampling.h"
 #include "core/render/interaction.h"
 
@@ -69,6 +70,8 @@ bool LightTracer::trace(std::uint32_t first, std::uint32_t count, std::uint32_t 
         batch.hits.resize(batch.rays.size());
         scene_.accelerator().intersect(batch.rays, batch.hits);
         batch.counts.rays += batch.rays.size();
+        surface_points(batch);
+        draw_numbers(batch, depth);
         shade(batch, depth);
         splat_unblocked(batch);
     }
@@ -94,6 +97,23 @@ void LightTracer::emit(std::uint32_t first, std::uint32_t count, std::uint32_t r
     }
 }
 
+void LightTracer::surface_points(LightBatch& batch) const {
+    batch.points.resize(batch.rays.size());
+    batch.with_uv.clear();
+    for (const Hit& hit : batch.hits)
+        batch.with_uv.push_back(hit.valid() && scene_.packed_material(hit.object).textured ? 1 : 0);
+    scene_.surfaces().points(batch.rays, batch.hits, batch.with_uv, batch.points);
+}
+
+void LightTracer::draw_numbers(LightBatch& batch, int depth) const {
+    batch.drawing.clear();
+    for (const LightBatch::State& state : batch.states) batch.drawing.push_back(batch.samplers[state.path]);
+    batch.lobe_numbers.resize(batch.drawing.size());
+    batch.direction_numbers.resize(batch.drawing.size());
+    draw_1d(batch.drawing, dimension(depth, kLobe), batch.lobe_numbers);
+    draw_2d(batch.drawing, dimension(depth, kDirection), batch.direction_numbers);
+}
+
 void LightTracer::shade(LightBatch& batch, int depth) const {
     batch.shadow_rays.clear();
     batch.connections.clear();
@@ -101,15 +121,12 @@ void LightTracer::shade(LightBatch& batch, int depth) const {
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
         const Hit& hit = batch.hits[i];
         if (!hit.valid()) continue;
-        LightBatch::State state = batch.states[i];
-        Ray ray = batch.rays[i];
-        const PackedMaterial& material = scene_.packed_material(hit.object);
-        const SurfacePoint point = scene_.surfaces().point(ray, hit, material.textured);
-        const Interaction at(point, material, -ray.direction);
+        LightBatch::State& state = batch.states[kept] = batch.states[i];
+        Ray& ray = batch.rays[kept] = batch.rays[i];
+        const Interaction at(batch.points[i], scene_.packed_material(hit.object), -ray.direction);
         if (depth > 0 && at.material.smooth) connect(batch, state, at, depth);
-        if (depth + 1 < scene_.scene().render.max_bounces && scatter(batch, state, ray, at, depth)) {
-            batch.states[kept] = state;
-            batch.rays[kept] = ray;
+        if (depth + 1 < scene_.scene().render.max_bounces &&
+            scatter(batch, state, ray, at, {batch.lobe_numbers[i], batch.direction_numbers[i]}, depth)) {
             ++kept;
         }
     }
@@ -144,11 +161,9 @@ void LightTracer::connect(LightBatch& batch, const LightBatch::State& state, con
 }
 
 /// Sends the path on its way; false where it ends.
-bool LightTracer::scatter(LightBatch& batch, LightBatch::State& state, Ray& ray, const Interaction& at,
-                          int depth) const {
-    const Sampler& sampler = batch.samplers[state.path];
-    const auto sample = at.bsdf().sample(at.wo_local, sampler.get_1d(dimension(depth, kLobe)),
-                                         sampler.get_2d(dimension(depth, kDirection)));
+bool LightTracer::scatter(const LightBatch& batch, LightBatch::State& state, Ray& ray, const Interaction& at,
+                          const ScatterNumbers& numbers, int depth) const {
+    const auto sample = at.bsdf().sample(at.wo_local, numbers.lobe, numbers.direction);
     if (!sample || (depth == 0 && !sample->specular)) return false;
     const Vec3 wi = at.frame.to_world(sample->wi);
     if (!at.consistent(wi, sample->wi) || !at.same_frame(wi)) return false;
@@ -165,10 +180,13 @@ bool LightTracer::scatter(LightBatch& batch, LightBatch::State& state, Ray& ray,
     const float reach = max_component(state.power) / state.reach;
     if (!(reach > 0 && state.ratio > 0 && state.ratio < kInfinity)) return false;
     if (!sample->specular && reach < 1) {
-        if (sampler.get_1d(dimension(depth, kRoulette)) >= reach) return false;
+        if (batch.samplers[state.path].get_1d(dimension(depth, kRoulette)) >= reach) return false;
         state.power /= reach;
     }
-    ray = {.origin = at.ray_origin(wi), .direction = wi};
+    ray.origin = at.ray_origin(wi);
+    ray.direction = wi;
+    ray.t_min = 0;
+    ray.t_max = kInfinity;
     return true;
 }
 

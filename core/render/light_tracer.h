@@ -32,6 +32,11 @@ struct LightBatch {
     std::vector<State> states;
     std::vector<Ray> rays;
     std::vector<Hit> hits;
+    std::vector<SurfacePoint> points;
+    std::vector<std::uint8_t> with_uv;  ///< Whether texture coordinates are asked for.
+    std::vector<Sampler> drawing;       ///< Samplers of the paths.
+    std::vector<float> lobe_numbers;    ///< To scatter with.
+    std::vector<Vec2> direction_numbers;
     // One a connection with the camera.
     std::vector<Ray> shadow_rays;
     std::vector<std::uint8_t> blocked;
@@ -77,9 +82,16 @@ public:
 
 private:
     void emit(std::uint32_t first, std::uint32_t count, std::uint32_t round, LightBatch& batch) const;
+    void surface_points(LightBatch& batch) const;
+    void draw_numbers(LightBatch& batch, int depth) const;
     void shade(LightBatch& batch, int depth) const;
     void connect(LightBatch& batch, const LightBatch::State& state, const Interaction& at, int depth) const;
-    bool scatter(LightBatch& batch, LightBatch::State& state, Ray& ray, const Interaction& at, int depth) const;
+    struct ScatterNumbers {
+        float lobe;
+        Vec2 direction;
+    };
+    bool scatter(const LightBatch& batch, LightBatch::State& state, Ray& ray, const Interaction& at,
+                 const ScatterNumbers& numbers, int depth) const;
     void splat_unblocked(LightBatch& batch) const;
 
     const RenderScene& scene_;

@@ -116,7 +116,7 @@ void PathTracer::camera_rays(PathBatch& batch) const {
         const Vec2 position = (centre + sample_filter(filter, batch.filter_numbers[i])) * pixel_size;
         const Vec2 lens = lens_extends ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
         batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
-        batch.rays[i] = camera_.ray(position, lens);
+        camera_.write_ray(position, lens, batch.rays[i]);
     }
     batch.counts.paths += n;
 }
@@ -294,26 +294,31 @@ void PathTracer::add_light(PathBatch& batch, const PathState& state, const Inter
 }
 
 /// Sends the path on its way, or ends it.
-void PathTracer::scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at,
+void PathTracer::scatter(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at,
                          const AimedBsdf& bsdf, const ScatterNumbers& numbers, int bounce) const {
     const auto sample = bsdf.sample(numbers.lobe, numbers.direction);
     if (!sample) return;
     const Vec3 wi = at.frame.to_world(sample->wi);
     if (!at.consistent(wi, sample->wi)) return;
-    state.throughput *= sample->weight;
-    const float reach = max_component(state.throughput);
+    Color throughput = state.throughput * sample->weight;
+    const float reach = max_component(throughput);
     if (!(reach > 0)) return;
     const int roulette_start = rr_start_ + (sample->specular ? kSparedSpecularBounces : 0);
     if (options_.russian_roulette && bounce + 1 >= roulette_start && reach < kRouletteThroughput) {
         const float survival = reach / kRouletteThroughput;
         if (batch.samplers[state.part].get_1d(dimension(bounce, kRoulette)) >= survival) return;
-        state.throughput /= survival;
+        throughput /= survival;
     }
-    if (light_tracer_) state.light_ratio = light_ratio(state, ray, at, wi, *sample, bounce);
-    state.receiver = at.receiver();
-    state.bsdf_pdf = sample->specular ? 0 : sample->pdf;
-    batch.next_states.push_back(state);
-    batch.next_rays.push_back({.origin = at.ray_origin(wi), .direction = wi});
+    // Member by member: a whole that is copied has to wait for its parts to be stored.
+    PathState& next = batch.next_states.emplace_back(state);
+    next.throughput = throughput;
+    if (light_tracer_) next.light_ratio = light_ratio(state, ray, at, wi, *sample, bounce);
+    next.receiver.p = at.point.p;
+    next.receiver.n = at.receiver_normal();
+    next.bsdf_pdf = sample->specular ? 0 : sample->pdf;
+    Ray& next_ray = batch.next_rays.emplace_back();
+    next_ray.origin = at.ray_origin(wi);
+    next_ray.direction = wi;
 }
 
 /// PathState::light_ratio after scattering.

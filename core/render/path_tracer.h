@@ -73,7 +73,7 @@ private:
                    const LightSample& light) const;
     void split(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
                int bounce) const;
-    void scatter(PathBatch& batch, PathState state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
+    void scatter(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at, const AimedBsdf& bsdf,
                  const ScatterNumbers& numbers, int bounce) const;
     template <bool kVaries>
     bool varies(const PackedMaterial& material) const;
