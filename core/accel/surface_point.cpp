@@ -213,8 +213,11 @@ struct SurfaceOf<Quad> {
     FlatHit flat(const Hit& hit) const {
         const double u = hit.u, v = hit.v;
         const bool first = u >= v;
-        return flat_hit(corners[0], corners[first ? 1 : 2], corners[first ? 2 : 3], first ? u - v : u,
-                        first ? v : v - u, sign);
+        // Without a branch, which nobody could foretell. What is multiplied by 0 or 1 stays exact.
+        const double in_first = first ? 1 : 0;
+        const std::size_t second = 2 - std::size_t{first};
+        return flat_hit(corners[0], corners[second], corners[second + 1], u - in_first * v, v - (1 - in_first) * u,
+                        sign);
     }
     Vec3 shading_normal(const Hit&) const { return Vec3(0); }
     Vec2 uv(const Hit& hit) const { return {hit.u, hit.v}; }

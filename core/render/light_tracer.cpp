@@ -86,10 +86,20 @@ void LightTracer::emit(std::uint32_t first, std::uint32_t count, std::uint32_t r
     batch.rays.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t path = first + i;
-        const Sampler& sampler = batch.samplers[i] =
+        batch.samplers[i] =
             Sampler(settings.sampler, settings.seed, kFirstGroup + path / kGroup, round * kGroup + path % kGroup);
-        const auto emitted = scene_.emission()->sample(sampler.get_1d(kLamp), sampler.get_2d(kPoint),
-                                                       sampler.get_1d(kTarget), sampler.get_2d(kLampDirection));
+    }
+    batch.lamp_numbers.resize(count);
+    batch.target_numbers.resize(count);
+    batch.point_numbers.resize(count);
+    batch.direction_numbers.resize(count);
+    draw_1d(batch.samplers, kLamp, batch.lamp_numbers);
+    draw_1d(batch.samplers, kTarget, batch.target_numbers);
+    draw_2d(batch.samplers, kPoint, batch.point_numbers);
+    draw_2d(batch.samplers, kLampDirection, batch.direction_numbers);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto emitted = scene_.emission()->sample(batch.lamp_numbers[i], batch.point_numbers[i],
+                                                       batch.target_numbers[i], batch.direction_numbers[i]);
         if (!emitted) continue;
         const float ratio = static_cast<float>(paths_) * emitted->pdf / emitted->cosine;
         batch.states.push_back({emitted->power, ratio, max_component(emitted->power), i});

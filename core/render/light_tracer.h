@@ -35,8 +35,8 @@ struct LightBatch {
     std::vector<SurfacePoint> points;
     std::vector<std::uint8_t> with_uv;  ///< Whether texture coordinates are asked for.
     std::vector<Sampler> drawing;       ///< Samplers of the paths.
-    std::vector<float> lobe_numbers;    ///< To scatter with.
-    std::vector<Vec2> direction_numbers;
+    std::vector<float> lamp_numbers, target_numbers, lobe_numbers;
+    std::vector<Vec2> point_numbers, direction_numbers;
     // One a connection with the camera.
     std::vector<Ray> shadow_rays;
     std::vector<std::uint8_t> blocked;

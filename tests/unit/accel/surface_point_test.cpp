@@ -227,5 +227,88 @@ TEST(SurfacePoint, ManyAtOnceAreTheSameAsEachAlone) {
     use_instruction_set(instruction_sets().front());
 }
 
+/// Three corners of any size anywhere, some of them in a line or at one point.
+std::array<Vec3, 3> any_corners(Random& random) {
+    const Vec3 at = random.integer(0, 2) ? std::ldexp(1.0f, random.integer(-40, 40)) * random.in_cube(1) : Vec3(0);
+    const float size = std::ldexp(1.0f, random.integer(-60, 40));
+    std::array<Vec3, 3> corners;
+    for (Vec3& corner : corners) corner = at + size * random.in_cube(1);
+    if (random.integer(0, 9) == 0) corners[2] = corners[0] + 0.5f * (corners[1] - corners[0]);
+    if (random.integer(0, 9) == 0) corners[1] = corners[0];
+    return corners;
+}
+
+/// A triangle, a quad, or a mesh of some triangles that may have normals, some of them 0, and texture coordinates.
+TracedShape any_flat_shape(Random& random) {
+    const auto corners = any_corners(random);
+    switch (random.integer(0, 2)) {
+        case 0:
+            return Triangle{corners};
+        case 1:
+            return Quad{corners[0], corners[1] - corners[0], corners[2] - corners[0]};
+        default:
+            break;
+    }
+    TriangleMesh mesh;
+    const bool normals = random.integer(0, 1), uvs = random.integer(0, 1);
+    for (std::uint32_t i = 0; i < 10; ++i) {
+        for (const Vec3& corner : any_corners(random)) {
+            mesh.positions.push_back(corner);
+            if (normals) mesh.normals.push_back(random.integer(0, 5) ? random.direction() : Vec3(0));
+            if (uvs) mesh.uvs.emplace_back(random.uniform(0, 1), random.uniform(0, 1));
+        }
+        mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+/// Bits, but any NaN is like any other: triangles without area have no normal, and no ray meets them.
+bool same_numbers(const Vec3& a, const Vec3& b) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool nan = std::isnan(a[axis]) && std::isnan(b[axis]);
+        if (!nan && std::bit_cast<std::uint32_t>(a[axis]) != std::bit_cast<std::uint32_t>(b[axis])) return false;
+    }
+    return true;
+}
+
+TEST(SurfacePoint, ManyOnFlatShapesAreTheSameAsEachAlone) {
+    Random random(19);
+    std::vector<GeometryInstance> instances;
+    for (int i = 0; i < 300; ++i) {
+        Affine to_world;
+        if (random.integer(0, 1)) {
+            to_world.translation = random.in_cube(10);
+            for (int axis = 0; axis < 3; ++axis) to_world.linear[axis] = random.in_cube(2);  // Half of them mirror.
+        }
+        instances.push_back({any_flat_shape(random), to_world});
+    }
+    const Surfaces surfaces(instances);
+    std::vector<Hit> hits(3001);
+    std::vector<std::uint8_t> with_uv;
+    for (Hit& hit : hits) {
+        const float u = random.uniform(0, 1);
+        hit = {.t = 1, .u = u, .v = random.uniform(0, 1 - u), .object = kNone, .primitive = 0};
+        if (random.integer(0, 9)) hit.object = static_cast<std::uint32_t>(random.integer(0, 299));
+        if (hit.valid() && instances[hit.object].shape.index() == 5)
+            hit.primitive = static_cast<std::uint32_t>(random.integer(0, 9));
+        with_uv.push_back(static_cast<std::uint8_t>(random.integer(0, 1)));
+    }
+    const std::vector<Ray> rays(hits.size());
+    for (const std::string_view set : instruction_sets()) {
+        use_instruction_set(set);
+        std::vector<SurfacePoint> points(rays.size());
+        surfaces.points(rays, hits, with_uv, points);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            if (!hits[i].valid()) continue;
+            const SurfacePoint expected = surfaces.point(rays[i], hits[i], with_uv[i] != 0), &actual = points[i];
+            ASSERT_TRUE(same_numbers(expected.p, actual.p) && same_numbers(expected.p_error, actual.p_error) &&
+                        same_numbers(expected.ng, actual.ng) && same_numbers(expected.ns, actual.ns))
+                << "hit " << i << ' ' << set;
+            ASSERT_EQ(expected.uv, actual.uv) << "hit " << i << ' ' << set;
+        }
+    }
+    use_instruction_set(instruction_sets().front());
+}
+
 }  // namespace
 }  // namespace rayuela::test
