@@ -33,6 +33,11 @@ float area_pdf(const Vec3& p, const Vec3& point, const Vec3& wi, const Vec3& nor
     return glm::dot(d, d) / (area * std::abs(glm::dot(normal, wi)));
 }
 
+/// A light is near up to so many times the half of its diagonal.
+constexpr float kNear = 5;
+/// Of edges that are closer to parallel than this sine the numbers of a point are lost in its rounding.
+constexpr float kLeastSine = 1.0f / 64;
+
 Vec2 sphere_uv(const Vec3& own) {
     const float longitude = std::atan2(-own.z, own.x) * (0.5f * kInvPi);
     return {longitude < 0 ? longitude + 1 : longitude, std::atan2(std::hypot(own.x, own.z), own.y) * kInvPi};
@@ -60,8 +65,8 @@ Color AreaLight::radiance_at(const Vec3& sphere_normal) const {
     return emitted(*texture->material, sphere_uv(glm::normalize(texture->sphere_to_local * sphere_normal)), true);
 }
 
-std::optional<LightSample> AreaLight::sample(const Vec3& p, const Vec2& u) const {
-    return kind == Kind::sphere ? sample_sphere(p, u) : sample_flat(p, u);
+std::optional<LightSample> AreaLight::sample(const LightReceiver& receiver, const Vec2& u) const {
+    return kind == Kind::sphere ? sample_sphere(receiver.p, u) : sample_flat(receiver, u);
 }
 
 std::optional<LightSample> AreaLight::sample_sphere(const Vec3& p, const Vec2& u) const {
@@ -83,15 +88,48 @@ std::optional<LightSample> AreaLight::sample_sphere(const Vec3& p, const Vec2& u
     } else {
         n = sample_uniform_sphere(u);
     }
-    return finish(p, origin + size * n, n, cone ? uniform_cone_pdf(cone->one_minus_cos) : 0.0f, radiance_at(n));
+    return finish(p, origin + size * n, n, {cone ? uniform_cone_pdf(cone->one_minus_cos) : 0.0f, 1}, radiance_at(n));
 }
 
-std::optional<LightSample> AreaLight::sample_flat(const Vec3& p, const Vec2& u) const {
-    const Vec2 position = kind == Kind::triangle ? sample_uniform_triangle(u) : u;
-    return finish(p, origin + position.x * edge_u + position.y * edge_v, normal, 0, radiance_at(position));
+Vec3 AreaLight::diagonal() const {
+    const Vec3 across = edge_u + edge_v;
+    return kind == Kind::triangle ? 0.5f * across : across;
 }
 
-std::optional<LightSample> AreaLight::finish(const Vec3& p, const Vec3& point, const Vec3& n, float solid_angle_pdf,
+float AreaLight::near2() const {
+    if (kind == Kind::sphere) return 0;
+    const double u2 = glm::dot(Vec3d(edge_u), Vec3d(edge_u)), v2 = glm::dot(Vec3d(edge_v), Vec3d(edge_v));
+    const double twice = kind == Kind::triangle ? 2 : 1, sine = twice * size / std::sqrt(u2 * v2);
+    return sine > kLeastSine ? static_cast<float>(0.25 * kNear * kNear * (u2 + v2)) : 0.0f;
+}
+
+std::optional<CornerWarp> AreaLight::warp(const LightReceiver& receiver) const {
+    const Vec3 corner = origin - receiver.p, across = diagonal(), middle = corner + 0.5f * across;
+    if (!(glm::dot(middle, middle) < near2())) return std::nullopt;
+    const std::array<Vec3, 4> corners{corner, corner + edge_u, corner + edge_v, corner + across};
+    std::array<float, 4> distance2{};
+    for (std::size_t i = 0; i < 4; ++i) distance2[i] = glm::dot(corners[i], corners[i]);
+    const float nearest2 = std::min(std::min(distance2[0], distance2[1]), std::min(distance2[2], distance2[3]));
+    if (!(nearest2 > 0)) return std::nullopt;
+    return corner_warp(corners, distance2, nearest2, receiver.n);
+}
+
+Vec2 AreaLight::numbers_of(const Vec3& point) const {
+    const Vec3d d = Vec3d(point) - Vec3d(origin), u(edge_u), v(edge_v), across = glm::cross(u, v);
+    const double area2 = glm::dot(across, across);
+    const Vec2 position(glm::dot(glm::cross(d, v), across) / area2, glm::dot(glm::cross(u, d), across) / area2);
+    return glm::clamp(kind == Kind::triangle ? invert_uniform_triangle(position) : position, 0.0f, 1.0f);
+}
+
+std::optional<LightSample> AreaLight::sample_flat(const LightReceiver& receiver, const Vec2& u) const {
+    const std::optional<CornerWarp> bent = warp(receiver);
+    const Vec2 numbers = bent ? bent->sample(u) : u;
+    const Vec2 position = kind == Kind::triangle ? sample_uniform_triangle(numbers) : numbers;
+    return finish(receiver.p, origin + position.x * edge_u + position.y * edge_v, normal,
+                  {0, bent ? bent->density(numbers) : 1}, radiance_at(position));
+}
+
+std::optional<LightSample> AreaLight::finish(const Vec3& p, const Vec3& point, const Vec3& n, const Density& density,
                                              const Color& emitted_radiance) const {
     const Vec3 d = point - p;
     const float distance = glm::length(d);
@@ -101,7 +139,7 @@ std::optional<LightSample> AreaLight::finish(const Vec3& p, const Vec3& point, c
     if (!(distance > 0) || cosine == 0 || (cosine < 0 && !two_sided) || is_black(emitted_radiance)) return std::nullopt;
     s.distance = distance;
     s.radiance = emitted_radiance;
-    s.pdf = solid_angle_pdf > 0 ? solid_angle_pdf : area_pdf(p, point, s.wi, n, area());
+    s.pdf = density.solid_angle > 0 ? density.solid_angle : density.area * area_pdf(p, point, s.wi, n, area());
     if (!(s.pdf > 0 && s.pdf < kInfinity)) return std::nullopt;
     // Rounding of the point itself, of the shadow ray's direction and of its intersection with the surface.
     const Vec3 error = gamma(6) * glm::abs(p) + point_error();
@@ -131,12 +169,14 @@ AreaLight::SurfaceSample AreaLight::sample_surface(const Vec2& u, float u_side) 
     return s;
 }
 
-float AreaLight::pdf(const Vec3& p, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const {
+float AreaLight::pdf(const LightReceiver& receiver, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const {
     if (glm::dot(ng, wi) >= 0 && !two_sided) return 0;
+    float density = area_pdf(receiver.p, hit_point, wi, ng, area());
     if (kind == Kind::sphere) {
-        if (const std::optional<Cone> cone = cone_of(*this, p)) return uniform_cone_pdf(cone->one_minus_cos);
+        if (const std::optional<Cone> cone = cone_of(*this, receiver.p)) return uniform_cone_pdf(cone->one_minus_cos);
+    } else if (const std::optional<CornerWarp> bent = warp(receiver)) {
+        density *= bent->density(numbers_of(hit_point));
     }
-    const float density = area_pdf(p, hit_point, wi, ng, area());
     return density < kInfinity ? density : 0.0f;
 }
 

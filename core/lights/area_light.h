@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/lights/corner_warp.h"
+#include "core/lights/light_importance.h"
 #include "core/lights/light_sample.h"
 #include "core/materials/material.h"
 #include "core/math/transform.h"
@@ -37,12 +39,12 @@ struct AreaLight {
     Color radiance_at(const Vec2& position) const;
     Color radiance_at(const Vec3& sphere_normal) const;
 
-    /// A point of the light that shines towards `p`, and its density per solid angle at p: spheres by the cone they fill
-    /// (from inside by area), all others by area.
-    std::optional<LightSample> sample(const Vec3& p, const Vec2& u) const;
+    /// A point of the light that shines towards the receiver, and its density per solid angle there: spheres by the cone they
+    /// fill (from inside by area), all others by area, and if near by what their corners send to the receiver.
+    std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
     /// Density with which `sample` draws the unit direction `wi`, which meets this light at `hit_point` with unit front
     /// normal `ng`.
-    float pdf(const Vec3& p, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const;
+    float pdf(const LightReceiver& receiver, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const;
 
     /// A point drawn evenly over the area, seen from a side that shines.
     struct SurfaceSample {
@@ -58,11 +60,24 @@ struct AreaLight {
     /// Bound on the rounding of a point of the light, a component each.
     Vec3 point_error() const;
 
+    /// From the corner of a flat light to the point that (1, 1) is mapped to: the corner across, or the middle of the side
+    /// across.
+    Vec3 diagonal() const;
+    /// Square of the distance to its middle within which a flat light is near; 0 where it never is.
+    float near2() const;
+
 private:
     std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;
-    std::optional<LightSample> sample_flat(const Vec3& p, const Vec2& u) const;
-    /// `solid_angle_pdf` 0: the point was drawn by area.
-    std::optional<LightSample> finish(const Vec3& p, const Vec3& point, const Vec3& n, float solid_angle_pdf,
+    std::optional<LightSample> sample_flat(const LightReceiver& receiver, const Vec2& u) const;
+    /// How to draw numbers for a near light.
+    std::optional<CornerWarp> warp(const LightReceiver& receiver) const;
+    /// The numbers that a point of a flat light is drawn by.
+    Vec2 numbers_of(const Vec3& point) const;
+    /// A point drawn per `solid_angle`, or where that is 0 per `area`.
+    struct Density {
+        float solid_angle, area;
+    };
+    std::optional<LightSample> finish(const Vec3& p, const Vec3& point, const Vec3& n, const Density& density,
                                       const Color& radiance) const;
 };
 

@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/lights/corner_warp-inl.h"
 #include "core/lights/light_importance-inl.h"
 #include "core/math/float_error.h"
 
@@ -116,7 +117,7 @@ HWY_INLINE ConeLanes cone_of(const Vec3Lanes& origin, Floats size, const Vec3Lan
 /// A point of a lamp a lane.
 struct LampPoints {
     Vec3Lanes point, normal;
-    Floats solid_angle_pdf;  ///< 0: drawn by area.
+    Floats solid_angle, area;  ///< As in AreaLight::Density.
 };
 
 /// As AreaLight::sample_sphere has it.
@@ -133,7 +134,8 @@ HWY_INLINE LampPoints sphere_points(const Vec3Lanes& origin, Floats size, const 
     const Floats x = hn::IfThenElse(beside, local.x / length, one), y = hn::IfThenElseZero(beside, local.y / length);
     const Vec3Lanes turned = BasisLanes(-cone.axis).to_world({sin_alpha * x, sin_alpha * y, cos_alpha});
     const Vec3Lanes n = select(cone.outside, turned, local);
-    return {origin + n * size, n, hn::IfThenElseZero(cone.outside, one / (all_lanes(2 * kPi) * cone.one_minus_cos))};
+    return {origin + n * size, n, hn::IfThenElseZero(cone.outside, one / (all_lanes(2 * kPi) * cone.one_minus_cos)),
+            one};
 }
 
 /// The lamp of each lane.
@@ -147,24 +149,49 @@ public:
     HWY_INLINE Vec3Lanes of(const FewLamps::Rows& rows) const { return {of(rows[0]), of(rows[1]), of(rows[2])}; }
     HWY_INLINE FloatMask is(const FewLamps::Row& row) const { return hn::Ne(of(row), hn::Zero(FloatTag())); }
 
-    HWY_INLINE LampPoints points(const Vec3Lanes& p, const Vec2Lanes& u) const {
+    HWY_INLINE LampPoints points(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
         if (!lamps_.any_flat) return sphere_points(of(lamps_.origin), of(lamps_.size), p, u);
-        const LampPoints flat = flat_points(u);
+        const LampPoints flat = flat_points(p, n, u);
         if (!lamps_.any_sphere) return flat;
         const LampPoints sphere = sphere_points(of(lamps_.origin), of(lamps_.size), p, u);
         const FloatMask round = is(lamps_.is_sphere);
         return {select(round, sphere.point, flat.point), select(round, sphere.normal, flat.normal),
-                hn::IfThenElseZero(round, sphere.solid_angle_pdf)};
+                hn::IfThenElseZero(round, sphere.solid_angle), hn::IfThenElse(round, sphere.area, flat.area)};
     }
 
 private:
     /// As AreaLight::sample_flat has it.
-    HWY_INLINE LampPoints flat_points(const Vec2Lanes& u) const {
-        const Vec2Lanes folded = sample_uniform_triangle(u);
+    HWY_INLINE LampPoints flat_points(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
+        const Numbers numbers = warped(p, n, u);
+        const Vec2Lanes folded = sample_uniform_triangle(numbers.u);
         const FloatMask triangle = is(lamps_.is_triangle);
-        const Floats x = hn::IfThenElse(triangle, folded.x, u.x), y = hn::IfThenElse(triangle, folded.y, u.y);
+        const Floats x = hn::IfThenElse(triangle, folded.x, numbers.u.x);
+        const Floats y = hn::IfThenElse(triangle, folded.y, numbers.u.y);
         return {of(lamps_.origin) + of(lamps_.edge_u) * x + of(lamps_.edge_v) * y, of(lamps_.normal),
-                hn::Zero(FloatTag())};
+                hn::Zero(FloatTag()), numbers.density};
+    }
+
+    struct Numbers {
+        Vec2Lanes u;
+        Floats density;
+    };
+    /// As AreaLight::warp has it.
+    HWY_INLINE Numbers warped(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
+        const FloatTag d;
+        const Floats one = all_lanes(1.0f);
+        const Vec3Lanes corner = of(lamps_.origin) - p, across = of(lamps_.diagonal);
+        const Vec3Lanes middle = corner + across * all_lanes(0.5f);
+        FloatMask near = hn::Lt(dot(middle, middle), of(lamps_.near2));
+        if (hn::AllFalse(d, near)) return {u, one};
+        const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v), corner + across};
+        Floats distance2[4];
+        for (std::size_t i = 0; i < 4; ++i) distance2[i] = dot(corners[i], corners[i]);
+        const Floats nearest2 = hn::Min(hn::Min(distance2[0], distance2[1]), hn::Min(distance2[2], distance2[3]));
+        near = hn::And(near, hn::Gt(nearest2, hn::Zero(d)));
+        const CornerWarpLanes warp = corner_warp(corners, distance2, nearest2, n);
+        const Vec2Lanes bent = warp.sample(u);
+        return {{hn::IfThenElse(near, bent.x, u.x), hn::IfThenElse(near, bent.y, u.y)},
+                hn::IfThenElse(near, warp.density(bent), one)};
     }
 
     const FewLamps& lamps_;
@@ -178,17 +205,18 @@ HWY_ATTR void sample_lamps(const FewLamps& lamps, LightBlock& block) {
     for (std::size_t i = 0; i < block.size; i += kLanes) {
         const Vec3Lanes p = load(block.p, i);
         const Floats u = hn::Min(hn::Load(d, block.u + i), all_lanes(1 - kUnitRoundoff));
-        const Choice choice = choose(lamps, p, load(block.n, i), u);
+        const Vec3Lanes n = load(block.n, i);
+        const Choice choice = choose(lamps, p, n, u);
         const ChosenLamps chosen(lamps, choice);
-        const LampPoints on_lamp = chosen.points(p, {choice.remainder, hn::Load(d, block.v + i)});
+        const LampPoints on_lamp = chosen.points(p, n, {choice.remainder, hn::Load(d, block.v + i)});
         const Vec3Lanes way = on_lamp.point - p;
         const Floats distance2 = dot(way, way), distance = hn::Sqrt(distance2);
         const Vec3Lanes wi = way / distance, radiance = chosen.of(lamps.radiance);
         const Floats towards = dot(on_lamp.normal, wi), cosine = hn::Neg(towards);
         const FloatMask shines =
             hn::Or(hn::Gt(cosine, zero), hn::And(hn::Lt(cosine, zero), chosen.is(lamps.two_sided)));
-        const Floats by_area = distance2 / (chosen.of(lamps.area) * hn::Abs(towards));
-        const Floats density = hn::IfThenElse(hn::Gt(on_lamp.solid_angle_pdf, zero), on_lamp.solid_angle_pdf, by_area);
+        const Floats by_area = on_lamp.area * (distance2 / (chosen.of(lamps.area) * hn::Abs(towards)));
+        const Floats density = hn::IfThenElse(hn::Gt(on_lamp.solid_angle, zero), on_lamp.solid_angle, by_area);
         const Floats pdf = density * choice.probability;
         const FloatMask valid = hn::And(hn::And(hn::Gt(density, zero), hn::Lt(density, all_lanes(kInfinity))),
                                         hn::And(hn::Gt(pdf, zero), hn::Gt(distance, zero)));
@@ -236,11 +264,13 @@ void FewLamps::add(const AreaLight& light) {
     put(light.origin, origin, k);
     put(light.edge_u, edge_u, k);
     put(light.edge_v, edge_v, k);
+    put(light.diagonal(), diagonal, k);
     put(light.normal, normal, k);
     put(light.radiance, radiance, k);
     put(light.point_error(), point_error, k);
     size[k] = light.size;
     area[k] = light.area();
+    near2[k] = light.near2();
     is_sphere[k] = sphere ? 1 : 0;
     is_triangle[k] = light.kind == AreaLight::Kind::triangle ? 1 : 0;
     two_sided[k] = light.two_sided ? 1 : 0;

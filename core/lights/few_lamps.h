@@ -30,8 +30,8 @@ public:
     LightClusters clusters;  ///< One lamp a lane. Unused where there is but one.
 
     /// As in AreaLight.
-    Rows origin{}, edge_u{}, edge_v{}, normal{}, radiance{}, point_error{};
-    Row size{}, area{};
+    Rows origin{}, edge_u{}, edge_v{}, diagonal{}, normal{}, radiance{}, point_error{};
+    Row size{}, area{}, near2{};
     Row is_sphere{}, is_triangle{}, two_sided{};  ///< 1 or 0.
 
 private:

@@ -71,7 +71,7 @@ std::optional<LightSample> LightTable::sample_environment(const Vec2& u) const {
 std::optional<LightSample> LightTable::sample_area_light(const LightReceiver& receiver, const Vec2& u) const {
     const std::optional<LightTree::Draw> draw = tree_.draw(receiver, u.x);
     if (!draw) return std::nullopt;
-    auto s = lights_[draw->light].sample(receiver.p, {draw->remainder, u.y});
+    auto s = lights_[draw->light].sample(receiver, {draw->remainder, u.y});
     if (s) s->pdf *= (1 - environment_probability_) * draw->probability;
     return s && s->pdf > 0 ? s : std::nullopt;
 }
@@ -82,7 +82,7 @@ float LightTable::pdf(const LightReceiver& receiver, const Vec3& wi, const Hit& 
     if (light == kNone) return 0;
     const float selection = tree_.probability(receiver, light);
     if (selection == 0) return 0;
-    return (1 - environment_probability_) * selection * lights_[light].pdf(receiver.p, wi, hit_point, ng);
+    return (1 - environment_probability_) * selection * lights_[light].pdf(receiver, wi, hit_point, ng);
 }
 
 float LightTable::environment_pdf(const Vec3& wi) const {

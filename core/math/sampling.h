@@ -78,6 +78,16 @@ inline Vec2 sample_uniform_triangle(const Vec2& u) {
     return u.x < u.y ? Vec2(u.x / 2, u.y - u.x / 2) : Vec2(u.x - u.y / 2, u.y / 2);
 }
 
+/// The u that `sample_uniform_triangle` maps to these barycentrics.
+inline Vec2 invert_uniform_triangle(const Vec2& b) {
+    return b.x < b.y ? Vec2(2 * b.x, b.x + b.y) : Vec2(b.x + b.y, 2 * b.y);
+}
+
+/// In [0, 1], of a density that is linear from `a` at 0 to `b` at 1, both positive. pbrt-v4 A.4.2.
+inline float sample_linear(float u, float a, float b) {
+    return std::min(u * (a + b) / (a + std::sqrt(a * a + u * (b * b - a * a))), 1.0f);
+}
+
 /// Weight of a strategy of density `a` (one sample each) against another of density `b`. Veach & Guibas 1995.
 inline float balance_heuristic(float a, float b) {
     if (a == 0) return 0;

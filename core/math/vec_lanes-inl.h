@@ -153,6 +153,10 @@ HWY_INLINE Vec2Lanes sample_uniform_triangle(const Vec2Lanes& u) {
     return {hn::IfThenElse(below, x, u.x - y), hn::IfThenElse(below, u.y - x, y)};
 }
 
+HWY_INLINE Floats sample_linear(Floats u, Floats a, Floats b) {
+    return hn::Min(u * (a + b) / (a + hn::Sqrt(a * a + u * (b * b - a * a))), all_lanes(1.0f));
+}
+
 HWY_INLINE Floats power_heuristic(Floats a, Floats b) {
     const Floats ratio = b / a, one = all_lanes(1.0f);
     return hn::IfThenZeroElse(hn::Eq(a, hn::Zero(FloatTag())), one / (one + ratio * ratio));

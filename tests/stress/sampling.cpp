@@ -121,7 +121,7 @@ Outcome sphere_cones(double scale) {
         if (sin2 >= 1) return;
         const Real expected = (1 + std::sqrt(1 - sin2)) / (2 * std::numbers::pi_v<Real> * sin2);
         const Vec3 wi(glm::normalize(to_center));
-        const float pdf = sphere.pdf(p, wi, p, -wi);
+        const float pdf = sphere.pdf({p}, wi, p, -wi);
         outcome.measure(static_cast<double>(std::fabs(pdf - expected) / expected));
     });
 }

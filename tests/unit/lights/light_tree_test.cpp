@@ -107,7 +107,7 @@ TEST(LightTree, WhateverLightsTheReceiverCanBeDrawn) {
         for (std::uint32_t light = 0; light < lights.size(); ++light) {
             bool arrives = false;
             for (std::uint32_t k = 0; k < 8 && !arrives; ++k) {
-                const auto s = lights[light].sample(receiver.p, Sampler(SamplerKind::sobol, 3, 0, k).get_2d(0));
+                const auto s = lights[light].sample(receiver, Sampler(SamplerKind::sobol, 3, 0, k).get_2d(0));
                 arrives = s && (receiver.n == Vec3(0) || glm::dot(receiver.n, s->wi) > 1e-4f);
             }
             lit += arrives;

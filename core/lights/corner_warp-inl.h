@@ -1,0 +1,57 @@
+// Compiled once for each set of instructions (Google Highway), hence no plain include guard.
+#if defined(RAYUELA_CORE_LIGHTS_CORNER_WARP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYUELA_CORE_LIGHTS_CORNER_WARP_INL_H_
+#undef RAYUELA_CORE_LIGHTS_CORNER_WARP_INL_H_
+#else
+#define RAYUELA_CORE_LIGHTS_CORNER_WARP_INL_H_
+#endif
+
+#include "core/lights/corner_warp.h"
+#include "core/math/vec_lanes-inl.h"
+
+// What corner_warp.h does, one receiver a lane, to the same bits.
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+struct CornerWarpLanes {
+    Floats weights[4];
+
+    HWY_INLINE Vec2Lanes sample(const Vec2Lanes& u) const {
+        const Floats y = sample_linear(u.y, weights[0] + weights[1], weights[2] + weights[3]);
+        return {sample_linear(u.x, between(y, 0), between(y, 1)), y};
+    }
+    HWY_INLINE Floats density(const Vec2Lanes& position) const {
+        const Floats left = between(position.y, 0), right = between(position.y, 1);
+        const Floats mean = all_lanes(0.25f) * ((weights[0] + weights[1]) + (weights[2] + weights[3]));
+        return (left + position.x * (right - left)) / mean;
+    }
+
+private:
+    HWY_INLINE Floats between(Floats y, std::size_t column) const {
+        return weights[column] + y * (weights[column + 2] - weights[column]);
+    }
+};
+
+HWY_INLINE CornerWarpLanes corner_warp(const Vec3Lanes (&corners)[4], const Floats (&distance2)[4], Floats nearest2,
+                                       const Vec3Lanes& n) {
+    const Floats zero = hn::Zero(FloatTag()), one = all_lanes(1.0f);
+    const FloatMask everywhere = is_black(n);
+    CornerWarpLanes warp;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Floats closeness = nearest2 / distance2[i];
+        const Floats height = hn::IfThenElse(everywhere, one, hn::Max(dot(n, corners[i]), zero));
+        warp.weights[i] = closeness * closeness * height;
+    }
+    const auto& w = warp.weights;
+    const Floats most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
+    const FloatMask any = hn::Gt(most, zero);
+    for (Floats& weight : warp.weights)
+        weight = hn::IfThenElse(any, hn::Max(weight / most, all_lanes(kLeastCornerShare)), one);
+    return warp;
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

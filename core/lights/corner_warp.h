@@ -1,0 +1,57 @@
+#pragma once
+
+#include "core/lights/light_importance.h"
+#include "core/math/sampling.h"
+
+#include <algorithm>
+#include <array>
+
+namespace rayuela {
+
+/// A density over the unit square, bilinear between weights at its corners (0, 0), (1, 0), (0, 1), (1, 1).
+/// Hart et al., "Practical Product Sampling by Fitting and Composing Warps", 2020, 4.2.
+struct CornerWarp {
+    std::array<float, 4> weights{1, 1, 1, 1};
+
+    /// Maps even numbers to this density.
+    Vec2 sample(const Vec2& u) const {
+        const float y = sample_linear(u.y, weights[0] + weights[1], weights[2] + weights[3]);
+        return {sample_linear(u.x, between(y, 0), between(y, 1)), y};
+    }
+    /// 1 where it is that of even numbers.
+    float density(const Vec2& position) const {
+        const float left = between(position.y, 0), right = between(position.y, 1);
+        const float mean = 0.25f * ((weights[0] + weights[1]) + (weights[2] + weights[3]));
+        return (left + position.x * (right - left)) / mean;
+    }
+
+private:
+    float between(float y, std::size_t column) const {
+        return weights[column] + y * (weights[column + 2] - weights[column]);
+    }
+};
+
+/// No corner counts for less than this share of the one that counts most: where a corner is below the horizon, or much
+/// farther than what is between the corners, light may come from near it all the same.
+inline constexpr float kLeastCornerShare = 1.0f / 32;
+
+/// The points `corners` of a lamp, as seen from a receiver at the origin whose half space is that of unit `n` (0: all), by the
+/// light a diffuse receiver gets from there: n . d / d^4, but for what is the same all over a plane. `nearest2` is the
+/// smallest of the squares `distance2`, and positive.
+inline CornerWarp corner_warp(const std::array<Vec3, 4>& corners, const std::array<float, 4>& distance2, float nearest2,
+                              const Vec3& n) {
+    const bool facing = !is_black(n);
+    CornerWarp warp;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const float closeness = nearest2 / distance2[i];
+        const float height = facing ? std::max(glm::dot(n, corners[i]), 0.0f) : 1.0f;
+        warp.weights[i] = closeness * closeness * height;
+    }
+    const std::array<float, 4>& w = warp.weights;
+    const float most = std::max(std::max(w[0], w[1]), std::max(w[2], w[3]));
+    if (!(most > 0)) return {};
+    for (float& weight : warp.weights) weight = std::max(weight / most, kLeastCornerShare);
+    return warp;
+}
+
+}  // namespace rayuela
