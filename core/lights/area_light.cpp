@@ -36,7 +36,14 @@ float area_pdf(const Vec3& p, const Vec3& point, const Vec3& wi, const Vec3& nor
 /// A light is near up to so many times the half of its diagonal.
 constexpr float kNear = 5;
 /// Of edges that are closer to parallel than this sine the numbers of a point are lost in its rounding.
-constexpr float kLeastSine = 1.0f / 64;
+constexpr double kLeastSine = 1.0 / 64;
+
+/// A rectangle is close up to so many times the half of its diagonal. Farther away its corners say as much for less time.
+constexpr double kClose = 2;
+/// The cosine of edges that stand at right angles but for the rounding of corners 2^7 sizes away from the origin.
+constexpr double kRightAngle = 0x1p-16;
+/// Of the half diagonal: narrower ones are not looked at as rectangles, for their solid angle is lost in rounding.
+constexpr double kLeastSide = 1.0 / 64;
 
 Vec2 sphere_uv(const Vec3& own) {
     const float longitude = std::atan2(-own.z, own.x) * (0.5f * kInvPi);
@@ -99,8 +106,34 @@ Vec3 AreaLight::diagonal() const {
 float AreaLight::near2() const {
     if (kind == Kind::sphere) return 0;
     const double u2 = glm::dot(Vec3d(edge_u), Vec3d(edge_u)), v2 = glm::dot(Vec3d(edge_v), Vec3d(edge_v));
-    const double twice = kind == Kind::triangle ? 2 : 1, sine = twice * size / std::sqrt(u2 * v2);
-    return sine > kLeastSine ? static_cast<float>(0.25 * kNear * kNear * (u2 + v2)) : 0.0f;
+    const double span = (kind == Kind::triangle ? 2.0 : 1.0) * size;
+    const bool sliver = span * span < kLeastSine * kLeastSine * u2 * v2;
+    return sliver ? 0.0f : static_cast<float>(0.25 * kNear * kNear * (u2 + v2));
+}
+
+RectangleFrame AreaLight::frame() const {
+    if (kind != Kind::parallelogram) return {};
+    const Vec3d u(edge_u), v(edge_v);
+    const double width = glm::length(u), height = glm::length(v), unit = 0.5 * std::hypot(width, height);
+    if (std::abs(glm::dot(u, v)) > kRightAngle * width * height) return {};
+    if (!(std::min(width, height) >= kLeastSide * unit)) return {};
+    return {.x = Vec3(u / (width * unit)),
+            .y = Vec3(v / (height * unit)),
+            .z = Vec3(glm::normalize(glm::cross(u, v)) / unit),
+            .width = static_cast<float>(width / unit),
+            .height = static_cast<float>(height / unit),
+            .close2 = static_cast<float>(kClose * kClose * unit * unit)};
+}
+
+std::optional<RectangleView> AreaLight::close_view(const Vec3& p) const {
+    if (kind != Kind::parallelogram) return std::nullopt;
+    const Vec3 corner = origin - p, middle = corner + 0.5f * diagonal();
+    const float distance2 = glm::dot(middle, middle);
+    if (!(distance2 < near2())) return std::nullopt;  // which is farther, and sooner known
+    const RectangleFrame axes = frame();
+    if (!(distance2 < axes.close2)) return std::nullopt;
+    const RectangleView view(axes, corner);
+    return view.z > kLeastHeight ? std::optional(view) : std::nullopt;
 }
 
 std::optional<CornerWarp> AreaLight::warp(const LightReceiver& receiver) const {
@@ -122,6 +155,12 @@ Vec2 AreaLight::numbers_of(const Vec3& point) const {
 }
 
 std::optional<LightSample> AreaLight::sample_flat(const LightReceiver& receiver, const Vec2& u) const {
+    if (const std::optional<RectangleView> view = close_view(receiver.p)) {
+        const float angle = view->solid_angle();
+        const Vec2 position = view->sample(u, angle);
+        return finish(receiver.p, origin + position.x * edge_u + position.y * edge_v, normal, {1 / angle, 1},
+                      radiance_at(position));
+    }
     const std::optional<CornerWarp> bent = warp(receiver);
     const Vec2 numbers = bent ? bent->sample(u) : u;
     const Vec2 position = kind == Kind::triangle ? sample_uniform_triangle(numbers) : numbers;
@@ -171,6 +210,7 @@ AreaLight::SurfaceSample AreaLight::sample_surface(const Vec2& u, float u_side) 
 
 float AreaLight::pdf(const LightReceiver& receiver, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const {
     if (glm::dot(ng, wi) >= 0 && !two_sided) return 0;
+    if (const std::optional<RectangleView> view = close_view(receiver.p)) return 1 / view->solid_angle();
     float density = area_pdf(receiver.p, hit_point, wi, ng, area());
     if (kind == Kind::sphere) {
         if (const std::optional<Cone> cone = cone_of(*this, receiver.p)) return uniform_cone_pdf(cone->one_minus_cos);

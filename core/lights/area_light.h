@@ -3,6 +3,7 @@
 #include "core/lights/corner_warp.h"
 #include "core/lights/light_importance.h"
 #include "core/lights/light_sample.h"
+#include "core/lights/rectangle_view.h"
 #include "core/materials/material.h"
 #include "core/math/transform.h"
 
@@ -65,10 +66,14 @@ struct AreaLight {
     Vec3 diagonal() const;
     /// Square of the distance to its middle within which a flat light is near; 0 where it never is.
     float near2() const;
+    /// Of a rectangle, in units of the half of its diagonal; else its close2 is 0.
+    RectangleFrame frame() const;
 
 private:
     std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;
     std::optional<LightSample> sample_flat(const LightReceiver& receiver, const Vec2& u) const;
+    /// Where `p` is close to a rectangle.
+    std::optional<RectangleView> close_view(const Vec3& p) const;
     /// How to draw numbers for a near light.
     std::optional<CornerWarp> warp(const LightReceiver& receiver) const;
     /// The numbers that a point of a flat light is drawn by.

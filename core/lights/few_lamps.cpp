@@ -9,6 +9,7 @@
 
 #include "core/lights/corner_warp-inl.h"
 #include "core/lights/light_importance-inl.h"
+#include "core/lights/rectangle_view-inl.h"
 #include "core/math/float_error.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -156,42 +157,66 @@ public:
         const LampPoints sphere = sphere_points(of(lamps_.origin), of(lamps_.size), p, u);
         const FloatMask round = is(lamps_.is_sphere);
         return {select(round, sphere.point, flat.point), select(round, sphere.normal, flat.normal),
-                hn::IfThenElseZero(round, sphere.solid_angle), hn::IfThenElse(round, sphere.area, flat.area)};
+                hn::IfThenElse(round, sphere.solid_angle, flat.solid_angle),
+                hn::IfThenElse(round, sphere.area, flat.area)};
     }
 
 private:
+    /// Numbers for a point of a flat lamp.
+    struct Numbers {
+        Vec2Lanes u;
+        Floats solid_angle, area;  ///< As in AreaLight::Density.
+    };
+
     /// As AreaLight::sample_flat has it.
     HWY_INLINE LampPoints flat_points(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
-        const Numbers numbers = warped(p, n, u);
+        const Numbers numbers = flat_numbers(p, n, u);
         const Vec2Lanes folded = sample_uniform_triangle(numbers.u);
         const FloatMask triangle = is(lamps_.is_triangle);
         const Floats x = hn::IfThenElse(triangle, folded.x, numbers.u.x);
         const Floats y = hn::IfThenElse(triangle, folded.y, numbers.u.y);
         return {of(lamps_.origin) + of(lamps_.edge_u) * x + of(lamps_.edge_v) * y, of(lamps_.normal),
-                hn::Zero(FloatTag()), numbers.density};
+                numbers.solid_angle, numbers.area};
     }
 
-    struct Numbers {
-        Vec2Lanes u;
-        Floats density;
-    };
-    /// As AreaLight::warp has it.
-    HWY_INLINE Numbers warped(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
+    HWY_INLINE Numbers flat_numbers(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
         const FloatTag d;
-        const Floats one = all_lanes(1.0f);
+        Numbers numbers{u, hn::Zero(d), all_lanes(1.0f)};
         const Vec3Lanes corner = of(lamps_.origin) - p, across = of(lamps_.diagonal);
         const Vec3Lanes middle = corner + across * all_lanes(0.5f);
-        FloatMask near = hn::Lt(dot(middle, middle), of(lamps_.near2));
-        if (hn::AllFalse(d, near)) return {u, one};
+        const Floats distance2 = dot(middle, middle);
+        const FloatMask near = hn::Lt(distance2, of(lamps_.near2));
+        if (hn::AllFalse(d, near)) return numbers;
+        warp(corner, across, n, near, numbers);
+        const FloatMask close = hn::And(near, hn::Lt(distance2, of(lamps_.close2)));
+        if (!hn::AllFalse(d, close)) view(corner, u, close, numbers);
+        return numbers;
+    }
+
+    /// As AreaLight::warp has it.
+    HWY_INLINE void warp(const Vec3Lanes& corner, const Vec3Lanes& across, const Vec3Lanes& n, FloatMask near,
+                         Numbers& numbers) const {
         const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v), corner + across};
         Floats distance2[4];
         for (std::size_t i = 0; i < 4; ++i) distance2[i] = dot(corners[i], corners[i]);
         const Floats nearest2 = hn::Min(hn::Min(distance2[0], distance2[1]), hn::Min(distance2[2], distance2[3]));
-        near = hn::And(near, hn::Gt(nearest2, hn::Zero(d)));
+        near = hn::And(near, hn::Gt(nearest2, hn::Zero(FloatTag())));
         const CornerWarpLanes warp = corner_warp(corners, distance2, nearest2, n);
-        const Vec2Lanes bent = warp.sample(u);
-        return {{hn::IfThenElse(near, bent.x, u.x), hn::IfThenElse(near, bent.y, u.y)},
-                hn::IfThenElse(near, warp.density(bent), one)};
+        const Vec2Lanes bent = warp.sample(numbers.u);
+        numbers.u = {hn::IfThenElse(near, bent.x, numbers.u.x), hn::IfThenElse(near, bent.y, numbers.u.y)};
+        numbers.area = hn::IfThenElse(near, warp.density(bent), numbers.area);
+    }
+
+    /// As AreaLight::close_view has it.
+    HWY_INLINE void view(const Vec3Lanes& corner, const Vec2Lanes& u, FloatMask close, Numbers& numbers) const {
+        const RectangleFrameLanes frame{of(lamps_.frame_x), of(lamps_.frame_y), of(lamps_.frame_z),
+                                        of(lamps_.frame_width), of(lamps_.frame_height)};
+        const RectangleViewLanes view(frame, corner);
+        close = hn::And(close, hn::Gt(view.z, all_lanes(kLeastHeight)));
+        const Floats angle = view.solid_angle();
+        const Vec2Lanes position = view.sample(u, angle);
+        numbers.u = {hn::IfThenElse(close, position.x, numbers.u.x), hn::IfThenElse(close, position.y, numbers.u.y)};
+        numbers.solid_angle = hn::IfThenElseZero(close, all_lanes(1.0f) / angle);
     }
 
     const FewLamps& lamps_;
@@ -271,6 +296,13 @@ void FewLamps::add(const AreaLight& light) {
     size[k] = light.size;
     area[k] = light.area();
     near2[k] = light.near2();
+    const RectangleFrame frame = light.frame();
+    put(frame.x, frame_x, k);
+    put(frame.y, frame_y, k);
+    put(frame.z, frame_z, k);
+    frame_width[k] = frame.width;
+    frame_height[k] = frame.height;
+    close2[k] = frame.close2;
     is_sphere[k] = sphere ? 1 : 0;
     is_triangle[k] = light.kind == AreaLight::Kind::triangle ? 1 : 0;
     two_sided[k] = light.two_sided ? 1 : 0;

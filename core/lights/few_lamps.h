@@ -32,6 +32,8 @@ public:
     /// As in AreaLight.
     Rows origin{}, edge_u{}, edge_v{}, diagonal{}, normal{}, radiance{}, point_error{};
     Row size{}, area{}, near2{};
+    Rows frame_x{}, frame_y{}, frame_z{};  ///< As in RectangleFrame.
+    Row frame_width{}, frame_height{}, close2{};
     Row is_sphere{}, is_triangle{}, two_sided{};  ///< 1 or 0.
 
 private:
