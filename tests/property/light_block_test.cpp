@@ -31,13 +31,19 @@ Lamps random_lamps(int count, Random& random) {
     for (int i = 0; i < count; ++i) {
         const Vec3 at = random.in_cube(4);
         const bool two_sided = random.integer(0, 1) == 1;
-        switch (random.integer(0, 3)) {
+        switch (random.integer(0, 4)) {
             case 0:
                 lamps.add(Triangle{{at, at + random.in_cube(), at + random.in_cube()}}, random, two_sided);
                 break;
             case 1:
                 lamps.add(Quad{at, random.in_cube(), random.in_cube()}, random, two_sided);
                 break;
+            case 2: {
+                const Mat3 turn = random.rotation();
+                lamps.add(Quad{at, random.uniform(0.01f, 2) * turn[0], random.uniform(0.01f, 2) * turn[1]}, random,
+                          two_sided);
+                break;
+            }
             default:
                 lamps.add(Sphere{at, std::exp2(random.uniform(-12, 2))}, random, two_sided);
         }
@@ -52,6 +58,8 @@ LightReceiver random_receiver(const Lamps& lamps, Random& random) {
         lamps.instances[static_cast<std::size_t>(random.integer(0, static_cast<int>(lamps.instances.size()) - 1))]
             .shape;
     const auto* sphere = std::get_if<Sphere>(&shape);
+    if (const auto* quad = std::get_if<Quad>(&shape); quad && random.integer(0, 1) == 0)
+        receiver.p = quad->point + 0.5f * (quad->u + quad->v) + std::exp2(random.uniform(-3, 2)) * random.direction();
     if (sphere && random.integer(0, 1) == 0)
         receiver.p = sphere->center + sphere->radius * std::exp2(random.uniform(-3, 3)) * random.direction();
     return receiver;
