@@ -45,9 +45,10 @@ HWY_INLINE CornerWarpLanes corner_warp(const Vec3Lanes (&corners)[4], const Floa
     }
     const auto& w = warp.weights;
     const Floats most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
-    const FloatMask any = hn::Gt(most, zero);
+    const Floats scale = one / most;
+    const FloatMask any = hn::Lt(scale, all_lanes(kInfinity));
     for (Floats& weight : warp.weights)
-        weight = hn::IfThenElse(any, hn::Max(weight / most, all_lanes(kLeastCornerShare)), one);
+        weight = hn::IfThenElse(any, hn::Max(weight * scale, all_lanes(kLeastCornerShare)), one);
     return warp;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/lights/light_importance.h"
+#include "core/math/ray.h"
 #include "core/math/sampling.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace rayuela {
 
 /// A density over the unit square, bilinear between weights at its corners (0, 0), (1, 0), (0, 1), (1, 1).
-/// Hart et al., "Practical Product Sampling by Fitting and Composing Warps", 2020, 4.2.
+/// Hart et al., "Practical Product Sampling by Fitting and Composing Warps", 2020.
 struct CornerWarp {
     std::array<float, 4> weights{1, 1, 1, 1};
 
@@ -49,8 +50,9 @@ inline CornerWarp corner_warp(const std::array<Vec3, 4>& corners, const std::arr
     }
     const std::array<float, 4>& w = warp.weights;
     const float most = std::max(std::max(w[0], w[1]), std::max(w[2], w[3]));
-    if (!(most > 0)) return {};
-    for (float& weight : warp.weights) weight = std::max(weight / most, kLeastCornerShare);
+    const float scale = 1 / most;
+    if (!(scale < kInfinity)) return {};
+    for (float& weight : warp.weights) weight = std::max(weight * scale, kLeastCornerShare);
     return warp;
 }
 

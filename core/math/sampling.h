@@ -83,7 +83,7 @@ inline Vec2 invert_uniform_triangle(const Vec2& b) {
     return b.x < b.y ? Vec2(2 * b.x, b.x + b.y) : Vec2(b.x + b.y, 2 * b.y);
 }
 
-/// In [0, 1], of a density that is linear from `a` at 0 to `b` at 1, both positive. pbrt-v4 A.4.2.
+/// In [0, 1], of a density that is linear from `a` at 0 to `b` at 1, both positive. pbrt-v4 2.3.2.
 inline float sample_linear(float u, float a, float b) {
     return std::min(u * (a + b) / (a + std::sqrt(a * a + u * (b * b - a * a))), 1.0f);
 }
