@@ -22,6 +22,8 @@ RELATIVE = {
     "core/accel/few_objects-inl.h": ["longest", "direction[axis]"],
     "core/accel/ray_block-inl.h": ["longest", "length >", "direction[axis]", "kBoundsTolerance", "kLeastDepthPad"],
     "core/accel/triangle_tests-inl.h": ["difference"],
+    "core/lights/area_light.cpp": ["kRightAngle"],
+    "core/lights/rectangle_view.h": ["kAtan"],
     "core/materials/microfacet.h": ["kSmoothAlpha"],
     "core/render/camera_rays.cpp": ["kParallel"],
     "core/render/image_error.cpp": ["kTrimmedShare"],
