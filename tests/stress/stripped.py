@@ -7,6 +7,7 @@ pads: without the pads of planes, the slack of filters and the care with cancell
     Embree without its robust flag: over the examples they cost at most 3%. Decisions stay in double.
 
 Usage: tests/stress/stripped.py features|pads [ROUNDS]
+       tests/stress/stripped.py check     only whether what is to be taken out is there
 """
 
 import json
@@ -30,7 +31,7 @@ FEATURES = [
     (TRACER, "return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;",
      "static_cast<void>(state), static_cast<void>(bounce);\n    return false;"),
     (TRACER, "light_tracer_ ? light_tracer_->camera_weight(state.light_ratio, hit, at) : 1;", "1;"),
-    (TRACER, "if (light_tracer_) state.light_ratio", "if (false) state.light_ratio"),
+    (TRACER, "if (light_tracer_) next.light_ratio", "if (false) next.light_ratio"),
     (MATTE, "if (light_tracer_) {", "if (false) {"),
     ("core/render/interaction.h", "varying_(varies ?", "varying_(varies && false ?"),
     (KERNELS, "for (const std::uint32_t index : scene.planes) {", "for (const std::uint32_t index : {0u}) {\n        break;"),
@@ -79,13 +80,19 @@ def copy_sources():
         (source / "build" / "deps").symlink_to(deps)
 
 
-def build(name, replacements):
-    """The program with each old replaced by the new if `replacements`, else as it is. Copies it to `name`."""
+def replaced(replacements):
+    """The text of each file that may change, with each old replaced by the new."""
     texts = {file: (root / file).read_text() for file, _, _ in FEATURES + PADS}
     for file, old, new in replacements:
-        assert texts[file].count(old) == 1, f"{file}: '{old}' is there {texts[file].count(old)} times"
+        if texts[file].count(old) != 1:
+            sys.exit(f"{file}: '{old}' is there {texts[file].count(old)} times; mend {__file__}")
         texts[file] = texts[file].replace(old, new)
-    for file, text in texts.items():
+    return texts
+
+
+def build(name, replacements):
+    """The program with each old replaced by the new if `replacements`, else as it is. Copies it to `name`."""
+    for file, text in replaced(replacements).items():
         (source / file).write_text(text)
     with open(folder / f"{name}.log", "w") as log:
         for command in (["cmake", "-S", source, "-B", folder / "whole" / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
@@ -110,6 +117,10 @@ def interval(ratios):
 
 
 def main():
+    if sys.argv[1:] == ["check"]:
+        for replacements, *_ in PARTS.values():
+            replaced(replacements)
+        return
     if len(sys.argv) < 2 or sys.argv[1] not in PARTS:
         sys.exit(__doc__)
     replacements, scenes, limit, same = PARTS[sys.argv[1]]
