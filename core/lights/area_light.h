@@ -41,7 +41,8 @@ struct AreaLight {
     Color radiance_at(const Vec3& sphere_normal) const;
 
     /// A point of the light that shines towards the receiver, and its density per solid angle there: spheres by the cone they
-    /// fill (from inside by area), all others by area, and if near by what their corners send to the receiver.
+    /// fill (from inside by area), all others by area, if near by what their corners send to the receiver, and close
+    /// rectangles evenly over their solid angle.
     std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
     /// Density with which `sample` draws the unit direction `wi`, which meets this light at `hit_point` with unit front
     /// normal `ng`.
@@ -78,7 +79,7 @@ private:
     std::optional<CornerWarp> warp(const LightReceiver& receiver) const;
     /// The numbers that a point of a flat light is drawn by.
     Vec2 numbers_of(const Vec3& point) const;
-    /// A point drawn per `solid_angle`, or where that is 0 per `area`.
+    /// Of a drawn point: per solid angle, or where that is 0, `area` times that of a point drawn evenly over the light.
     struct Density {
         float solid_angle, area;
     };

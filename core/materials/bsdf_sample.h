@@ -6,6 +6,12 @@
 
 namespace rayuela {
 
+/// What a direction is drawn with, each in [0, 1).
+struct ScatterNumbers {
+    float lobe;
+    Vec2 direction;
+};
+
 /// A direction drawn from a Bsdf.
 struct BsdfSample {
     Vec3 wi{0};

@@ -110,8 +110,10 @@ void LightTracer::emit(std::uint32_t first, std::uint32_t count, std::uint32_t r
 void LightTracer::surface_points(LightBatch& batch) const {
     batch.points.resize(batch.rays.size());
     batch.with_uv.clear();
-    for (const Hit& hit : batch.hits)
-        batch.with_uv.push_back(hit.valid() && scene_.packed_material(hit.object).textured ? 1 : 0);
+    if (scene_.features().textures) {
+        for (const Hit& hit : batch.hits)
+            batch.with_uv.push_back(hit.valid() && scene_.packed_material(hit.object).textured ? 1 : 0);
+    }
     scene_.surfaces().points(batch.rays, batch.hits, batch.with_uv, batch.points);
 }
 

@@ -33,7 +33,7 @@ struct LightBatch {
     std::vector<Ray> rays;
     std::vector<Hit> hits;
     std::vector<SurfacePoint> points;
-    std::vector<std::uint8_t> with_uv;  ///< Whether texture coordinates are asked for.
+    std::vector<std::uint8_t> with_uv;  ///< Whether texture coordinates are asked for; empty where they never are.
     std::vector<Sampler> drawing;       ///< Samplers of the paths.
     std::vector<float> lamp_numbers, target_numbers, lobe_numbers;
     std::vector<Vec2> point_numbers, direction_numbers;
@@ -86,10 +86,6 @@ private:
     void draw_numbers(LightBatch& batch, int depth) const;
     void shade(LightBatch& batch, int depth) const;
     void connect(LightBatch& batch, const LightBatch::State& state, const Interaction& at, int depth) const;
-    struct ScatterNumbers {
-        float lobe;
-        Vec2 direction;
-    };
     bool scatter(const LightBatch& batch, LightBatch::State& state, Ray& ray, const Interaction& at,
                  const ScatterNumbers& numbers, int depth) const;
     void splat_unblocked(LightBatch& batch) const;

@@ -46,12 +46,6 @@ public:
     }
 
 private:
-    /// In [0, 1).
-    struct ScatterNumbers {
-        float lobe;
-        Vec2 direction;
-    };
-
     // kVaries: materials may have to be worked out at their hits; the other form of a stage does not look.
     template <bool kVaries>
     bool trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const;

@@ -36,6 +36,12 @@ bool is_settled(const RenderSession& session) {
     return status.taken == status.submitted && status.phase == SessionPhase::finished;
 }
 
+/// Waits a minute at most; whether the session is settled.
+bool settle(const RenderSession& session) {
+    for (int i = 0; i < 60'000 && !is_settled(session); ++i) std::this_thread::sleep_for(1ms);
+    return is_settled(session);
+}
+
 /// Submits `edits` random edits of the scene while it renders.
 void edit_while_rendering(RenderSession& session, Scene& scene, int edits, std::mt19937& random) {
     for (int i = 0; i < edits; ++i) {
@@ -60,8 +66,7 @@ Outcome edit_storm(double scale) {
         RenderSession session({.threads = 2, .interactive = round % 2 == 0});
         session.submit(std::make_shared<const Scene>(scene));
         edit_while_rendering(session, scene, kEdits, random);
-        for (int i = 0; i < 60'000 && !is_settled(session); ++i) std::this_thread::sleep_for(1ms);
-        outcome.expect(is_settled(session) && session.frame()->image.pixels == render_fresh(scene)->image.pixels,
+        outcome.expect(settle(session) && session.frame()->image.pixels == render_fresh(scene)->image.pixels,
                        [&] { return fmt::format("round {}", round); });
         outcome.cases += kEdits;
     }
@@ -141,7 +146,7 @@ Outcome memory_under_edits(double scale) {
         for (int i = 0; i < kReadings; ++i) {
             edit_while_rendering(session, scene, edits * 3 / (8 * kReadings), random);
             session.submit(std::make_shared<const Scene>(start));
-            for (int k = 0; k < 60'000 && !is_settled(session); ++k) std::this_thread::sleep_for(1ms);
+            settle(session);
             half = std::min(half, resident_bytes());
         }
     }
