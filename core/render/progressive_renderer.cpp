@@ -195,6 +195,7 @@ std::shared_ptr<const Frame> ProgressiveRenderer::publish(SessionPhase phase, bo
         film_unpublished_ = false;
         publish_seconds_ = seconds_since(start);
     }
+    if (phase == SessionPhase::finished) preview_.reset();  // The next edit makes it anew: 1 to 12 MB until then.
     preview_unpublished_ = false;
     published_at_ = Clock::now();
     return frame;

@@ -125,8 +125,8 @@ double resident_bytes() {
     return resident * 4096;
 }
 
-/// Figure: growth of resident memory from one half of the storm to the other. Readings are of the same finished image and
-/// differ only by buffers that the two threads happen to have used; the least of a half is what is always held.
+/// Figure: growth of resident memory from one half of the storm to the other. Readings are of the same finished image;
+/// the least of a half is what is always held.
 Outcome memory_under_edits(double scale) {
     constexpr int kReadings = 10;
 #ifdef __GLIBC__
