@@ -144,7 +144,6 @@ private:
         const DoubleTag dd;
         const hn::Rebind<float, DoubleTag> df;
         const hn::Rebind<std::int32_t, DoubleTag> dw;
-        constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
         const Turn turn(dominant_axis);
         const std::uint32_t x = turn.x, y = turn.y, z = turn.z;
         const std::size_t n = leaf_.triangles;

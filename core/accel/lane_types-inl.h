@@ -6,13 +6,10 @@
 #define RAYUELA_CORE_ACCEL_LANE_TYPES_INL_H_
 #endif
 
-#include "core/math/lanes-inl.h"
+#include "core/math/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
-
-using DoubleTag = hn::CappedTag<double, 8>;
-using Doubles = hn::Vec<DoubleTag>;
 
 /// Groups of lanes take turns: while one waits for memory the others compute.
 inline constexpr std::size_t kGroups = 3, kSlots = kGroups * kLanes;

@@ -44,7 +44,6 @@ public:
         const DoubleTag dd;
         const hn::Rebind<float, DoubleTag> df;
         const hn::Rebind<std::int32_t, DoubleTag> di;
-        constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
         // What lies on a side of the cell is no cut.
         std::fill_n(planes.plane + planes.size, kDoubles, cell_.lo[axis]);
         const Doubles lo = hn::Set(dd, cell_.lo[axis]), hi = hn::Set(dd, cell_.hi[axis]);

@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/accel/double_axes-inl.h"
+#include "core/accel/surface_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {

@@ -94,7 +94,6 @@ HWY_INLINE void SphereCandidates::decide(std::span<const Ray> rays, std::span<co
     const DoubleTag dd;
     const hn::RebindToSigned<DoubleTag> di;
     const hn::Rebind<float, DoubleTag> df;
-    constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
     static_assert(sizeof(SphereD) == 4 * sizeof(double) && sizeof(Ray) == 8 * sizeof(float));
     const auto dot = [](Doubles ax, Doubles ay, Doubles az, Doubles bx, Doubles by, Doubles bz)
                          HWY_ATTR { return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz)); };

@@ -148,7 +148,6 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
     const hn::Rebind<float, DoubleTag> df;
     const hn::Rebind<std::int32_t, DoubleTag> dw;
     const hn::RebindToSigned<DoubleTag> di;
-    constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
     for (std::size_t i = 0; i < candidates_.size; i += kDoubles) {
         // Past the last candidate lie earlier ones or zeros, whose results are dropped.
         const auto index = hn::PromoteTo(di, hn::LoadU(dw, reinterpret_cast<const std::int32_t*>(candidates_.ray + i)));

@@ -63,7 +63,6 @@ private:
     template <typename Accept>
     HWY_INLINE void decide(const float* const* run, std::size_t i, LaneBits candidates, const Accept& accept) const {
         const DoubleTag dd;
-        constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
         const auto set = [&](std::size_t k) HWY_ATTR { return hn::Set(dd, double{run[k][i]}); };
         for (std::size_t lane = 0; lane < kLanes; lane += kDoubles) {
             LaneBits part = candidates >> lane & ((LaneBits{1} << kDoubles) - 1);

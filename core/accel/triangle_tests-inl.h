@@ -108,7 +108,6 @@ HWY_INLINE Doubles exact_difference(Doubles a, Doubles d, Doubles b, Doubles c) 
     if (HWY_LIKELY(hn::AllTrue(dd, safe))) return difference;
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSE4
     // No fused multiply-add here.
-    constexpr std::size_t kDoubles = hn::MaxLanes(DoubleTag());
     alignas(16) double as[kDoubles], bs[kDoubles], cs[kDoubles], ds[kDoubles];
     hn::Store(a, dd, as);
     hn::Store(b, dd, bs);

@@ -55,6 +55,9 @@ HWY_INLINE Vec3Lanes abs(const Vec3Lanes& v) {
 HWY_INLINE Floats dot(const Vec3Lanes& a, const Vec3Lanes& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+HWY_INLINE Vec3Lanes normalize(const Vec3Lanes& v) {
+    return v * (all_lanes(1.0f) / hn::Sqrt(dot(v, v)));
+}
 HWY_INLINE FloatMask is_black(const Vec3Lanes& c) {
     const Floats zero = hn::Zero(FloatTag());
     return hn::And(hn::And(hn::Eq(c.x, zero), hn::Eq(c.y, zero)), hn::Eq(c.z, zero));

@@ -4,9 +4,11 @@
 #include "core/lights/light_importance.h"
 #include "core/math/sampler.h"
 #include "core/render/interaction.h"
-#include "core/render/matte.h"
+#include "core/render/lobe_block.h"
 
+#include <array>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 namespace rayuela {
@@ -81,10 +83,7 @@ struct PathBatch {
     std::vector<std::uint32_t> shadow_parts;
     std::vector<std::uint8_t> blocked;
 
-    // Paths at surfaces that many are shaded at once, and which of `states` they are.
-    MatteBlock matte{};
-    std::uint32_t matte_states[MatteBlock::kSize];
-
+    std::array<LobeBlock, std::size(SingleLobe::kKinds)> lobes{};  ///< One a kind; their states are of `states`.
     SurfaceBlock surfaces;
 
     RayCounts counts;  ///< Of all batches since the worker set them to 0.

@@ -6,6 +6,7 @@
 #include "core/render/interaction.h"
 
 #include <algorithm>
+#include <climits>
 #include <numeric>
 
 namespace rayuela {
@@ -144,12 +145,6 @@ bool PathTracer::varies(const PackedMaterial& material) const {
     return kVaries && (material.textured || !options_.shortcuts.ready_materials);
 }
 
-/// Of a surface to be shaded in a MatteBlock: of a material that has `matte`.
-template <bool kVaries>
-Color PathTracer::matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const {
-    return varies<kVaries>(material) ? std::get<Diffuse>(material.material).bsdf(point.uv).albedo : *material.matte;
-}
-
 template <bool kVaries>
 void PathTracer::shade(PathBatch& batch, int bounce) const {
     const bool dark = options_.shortcuts.no_light && !scene_.features().any_light();
@@ -172,9 +167,16 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
         batch.counts.textured_hits += varies<kVaries>(material);
-        if (material.matte && options_.shortcuts.matte_blocks && !aims(state, bounce)) {
-            if (!last) add_matte(batch, i, matte_albedo<kVaries>(material, batch.points[i]), bounce);
-            continue;
+        if (in_block(state, material, bounce)) {
+            if (last) continue;
+            if (!varies<kVaries>(material)) {
+                add_to_block(batch, i, *material.lobe, bounce);
+                continue;
+            }
+            if (const auto lobe = single_lobe(material.material, batch.points[i].uv)) {
+                add_to_block(batch, i, *lobe, bounce);
+                continue;
+            }
         }
         const Interaction& at =
             batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies<kVaries>(material));
@@ -183,7 +185,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
     shade_surfaces(batch, bounce, last);
-    shade_matte(batch, bounce);
+    for (const SingleLobe::Kind kind : SingleLobe::kKinds) shade_block(batch, kind, bounce);
     batch.states.swap(batch.next_states);
     batch.rays.swap(batch.next_rays);
 }
@@ -303,8 +305,7 @@ void PathTracer::scatter(PathBatch& batch, const PathState& state, const Ray& ra
     Color throughput = state.throughput * sample->weight;
     const float reach = max_component(throughput);
     if (!(reach > 0)) return;
-    const int roulette_start = rr_start_ + (sample->specular ? kSparedSpecularBounces : 0);
-    if (options_.russian_roulette && bounce + 1 >= roulette_start && reach < kRouletteThroughput) {
+    if (bounce + 1 >= roulette_start(sample->specular) && reach < kRouletteThroughput) {
         const float survival = reach / kRouletteThroughput;
         if (batch.samplers[state.part].get_1d(dimension(bounce, kRoulette)) >= survival) return;
         throughput /= survival;
@@ -333,13 +334,21 @@ float PathTracer::light_ratio(const PathState& state, const Ray& ray, const Inte
     return at.cosine(wi) / (sample.pdf * light_tracer_->camera_density(at, ray.direction, distance));
 }
 
-MatteTask PathTracer::matte_task(int bounce) const {
-    const bool roulette = options_.russian_roulette && bounce + 1 >= rr_start_;
-    return {.sampler = scene_.scene().render.sampler,
+/// First bounce that roulette may cut.
+int PathTracer::roulette_start(bool specular) const {
+    if (!options_.russian_roulette) return INT_MAX;
+    return rr_start_ + (specular ? kSparedSpecularBounces : 0);
+}
+
+LobeTask PathTracer::lobe_task(SingleLobe::Kind kind, int bounce) const {
+    const bool roulette = bounce + 1 >= roulette_start(is_delta(kind));
+    return {.kind = kind,
+            .sampler = scene_.scene().render.sampler,
             .light_dimension = light_dimension(bounce),
+            .lobe_dimension = dimension(bounce, kLobe),
             .direction_dimension = direction_dimension(bounce, light_sampling_),
             .roulette_dimension = dimension(bounce, kRoulette),
-            .samples_lights = light_sampling_,
+            .samples_lights = light_sampling_ && !is_delta(kind),
             .mis = options_.mis,
             .black_shadow_rays = !options_.shortcuts.black_shadow_rays,
             .roulette_throughput = roulette ? kRouletteThroughput : 0};

@@ -71,11 +71,11 @@ private:
                  const ScatterNumbers& numbers, int bounce) const;
     template <bool kVaries>
     bool varies(const PackedMaterial& material) const;
-    template <bool kVaries>
-    Color matte_albedo(const PackedMaterial& material, const SurfacePoint& point) const;
-    void add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const;
-    void shade_matte(PathBatch& batch, int bounce) const;
-    MatteTask matte_task(int bounce) const;
+    bool in_block(const PathState& state, const PackedMaterial& material, int bounce) const;
+    void add_to_block(PathBatch& batch, std::size_t i, const SingleLobe& lobe, int bounce) const;
+    void shade_block(PathBatch& batch, SingleLobe::Kind kind, int bounce) const;
+    LobeTask lobe_task(SingleLobe::Kind kind, int bounce) const;
+    int roulette_start(bool specular) const;
     float light_ratio(const PathState& state, const Ray& ray, const Interaction& at, const Vec3& wi,
                       const BsdfSample& sample, int bounce) const;
     float scattering_weight(float bsdf_pdf, float light_pdf) const;

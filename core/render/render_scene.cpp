@@ -24,7 +24,6 @@ void for_each_texture(const Material& material, Use&& use) {
 PackedMaterial pack(const Material& material) {
     bool textured = false;
     for_each_texture(material, [&](const Image&) { textured = true; });
-    const Diffuse* const diffuse = textured ? nullptr : std::get_if<Diffuse>(&material);
     return {.material = material,
             .bsdf = make_bsdf(material, Vec2(0)),
             .textured = textured,
@@ -32,7 +31,7 @@ PackedMaterial pack(const Material& material) {
             .smooth = !is_specular_only(material),
             .transmits = transmits(material),
             .delta = has_delta_lobe(material),
-            .matte = diffuse ? std::optional(diffuse->bsdf(Vec2(0)).albedo) : std::nullopt};
+            .lobe = single_lobe(material, Vec2(0))};
 }
 
 std::vector<PackedMaterial> pack_all(const Scene& scene) {

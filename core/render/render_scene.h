@@ -6,6 +6,7 @@
 #include "core/lights/light_emission.h"
 #include "core/lights/light_table.h"
 #include "core/materials/bsdf.h"
+#include "core/materials/single_lobe.h"
 #include "core/render/features.h"
 #include "core/render/shortcuts.h"
 #include "core/scene/scene.h"
@@ -25,8 +26,8 @@ struct PackedMaterial {
     bool emissive = false;
     bool smooth = true;  ///< Light samples can contribute.
     bool transmits = false;
-    bool delta = false;          ///< Has a delta lobe.
-    std::optional<Color> matte;  ///< The albedo of a diffuse material that is not textured.
+    bool delta = false;              ///< Has a delta lobe.
+    std::optional<SingleLobe> lobe;  ///< Where it is one; at texture coordinates 0 where `textured`.
 };
 
 /// What the kernels read, derived from a Scene: flattened objects, packed materials, trees, lights. Immutable; parts that

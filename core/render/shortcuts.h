@@ -10,7 +10,7 @@ struct Shortcuts {
     bool any_hit = true;
     bool black_shadow_rays = true;
     bool lamp_blocks = true;
-    bool matte_blocks = true;
+    bool lobe_blocks = true;
     bool ready_materials = true;
     bool no_sky = true;
     bool no_light = true;
@@ -32,7 +32,7 @@ inline constexpr ShortcutField kShortcuts[] = {
     {"black_shadow_rays", &Shortcuts::black_shadow_rays,
      "Shadow rays are traced even where their light would be black."},
     {"lamp_blocks", &Shortcuts::lamp_blocks, "Points on lamps are chosen one by one."},
-    {"matte_blocks", &Shortcuts::matte_blocks, "Diffuse surfaces are shaded one by one."},
+    {"lobe_blocks", &Shortcuts::lobe_blocks, "Matte, metal and clear glass surfaces are shaded one by one."},
     {"ready_materials", &Shortcuts::ready_materials,
      "Materials are worked out at every hit, with texture coordinates."},
     {"no_sky", &Shortcuts::no_sky, "Rays that leave the scene look up a black sky."},

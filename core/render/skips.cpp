@@ -66,17 +66,17 @@ Skip lamps_one_by_one(const RenderScene& scene) {
             .shortcut = shortcut_of(&Shortcuts::lamp_blocks)};
 }
 
-Skip matte_one_by_one(const RenderScene& scene) {
-    std::uint64_t matte = 0;
+Skip surfaces_one_by_one(const RenderScene& scene) {
+    std::uint64_t plain = 0;
     const auto objects = static_cast<std::uint32_t>(scene.accelerator().instances().size());
-    for (std::uint32_t i = 0; i < objects; ++i) matte += scene.packed_material(i).matte.has_value();
-    return {.name = "Diffuse surfaces one by one",
-            .state = skipped_where(matte > 0),
-            .why = matte > 0 ? "Surfaces of one diffuse colour are shaded many at once."
-                             : "No surface is of one diffuse colour.",
-            .saved = matte,
+    for (std::uint32_t i = 0; i < objects; ++i) plain += scene.packed_material(i).lobe.has_value();
+    return {.name = "Surfaces one by one",
+            .state = skipped_where(plain > 0),
+            .why = plain > 0 ? "Matte, metal and clear glass surfaces are shaded many at once."
+                             : "No surface is matte, metal of one bounce or clear glass.",
+            .saved = plain,
             .unit = "objects",
-            .shortcut = shortcut_of(&Shortcuts::matte_blocks)};
+            .shortcut = shortcut_of(&Shortcuts::lobe_blocks)};
 }
 
 Skip light_samples_on_mirrors(const RenderScene& scene) {
@@ -314,7 +314,7 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
                             light_samples_of_the_sky(scene),
                             choice_among_lights(scene),
                             lamps_one_by_one(scene),
-                            matte_one_by_one(scene),
+                            surfaces_one_by_one(scene),
                             paths_from_lamps(scene),
                             bounces(scene),
                             environment(scene),

@@ -34,7 +34,7 @@ with tempfile.TemporaryDirectory() as folder:
         low, high = gain["interval"]
         assert 0 < low <= gain["ratio"] <= high, gain
         assert gain["name"] in text, gain
-    assert {"no_sky", "any_hit", "few_objects", "matte_blocks"} <= set(gains), gains
+    assert {"no_sky", "any_hit", "few_objects", "lobe_blocks"} <= set(gains), gains
     assert "no_light" not in gains, "there is a lamp"
 
     skips = json.loads(run("info", scene, "--measure", "--json"))["skips"]

@@ -19,7 +19,7 @@ import statistics
 import subprocess
 import sys
 
-TRACER, MATTE, KERNELS = "core/render/path_tracer.cpp", "core/render/path_tracer_matte.cpp", "core/accel/kd_kernels.cpp"
+TRACER, LOBES, KERNELS = "core/render/path_tracer.cpp", "core/render/path_tracer_lobes.cpp", "core/accel/kd_kernels.cpp"
 FEATURES = [
     (TRACER, "const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;",
      "constexpr bool lens_extends = false;"),
@@ -32,7 +32,7 @@ FEATURES = [
      "static_cast<void>(state), static_cast<void>(bounce);\n    return false;"),
     (TRACER, "light_tracer_ ? light_tracer_->camera_weight(state.light_ratio, hit, at) : 1;", "1;"),
     (TRACER, "if (light_tracer_) next.light_ratio", "if (false) next.light_ratio"),
-    (MATTE, "if (light_tracer_) {", "if (false) {"),
+    (LOBES, "if (light_tracer_) {", "if (false) {"),
     ("core/render/interaction.h", "varying_(varies ?", "varying_(varies && false ?"),
     (KERNELS, "for (const std::uint32_t index : scene.planes) {", "for (const std::uint32_t index : {0u}) {\n        break;"),
 ]

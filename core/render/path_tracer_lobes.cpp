@@ -3,12 +3,17 @@
 
 #include <bit>
 
-// The part of PathTracer that shades untextured diffuse surfaces, many at once.
+// The part of PathTracer that shades surfaces of single lobes, many at once.
 
 namespace rayuela {
 
-void PathTracer::add_matte(PathBatch& batch, std::size_t i, const Color& albedo, int bounce) const {
-    MatteBlock& block = batch.matte;
+/// Whether this path is shaded in a LobeBlock wherever the material is a single lobe.
+bool PathTracer::in_block(const PathState& state, const PackedMaterial& material, int bounce) const {
+    return material.lobe && options_.shortcuts.lobe_blocks && !(material.smooth && aims(state, bounce));
+}
+
+void PathTracer::add_to_block(PathBatch& batch, std::size_t i, const SingleLobe& lobe, int bounce) const {
+    LobeBlock& block = batch.lobes[static_cast<std::size_t>(lobe.kind)];
     const PathState& state = batch.states[i];
     const SurfacePoint& point = batch.points[i];
     const Sampler& sampler = batch.samplers[state.part];
@@ -19,45 +24,47 @@ void PathTracer::add_matte(PathBatch& batch, std::size_t i, const Color& albedo,
     put(point.ng, block.ng, to);
     put(point.ns, block.ns, to);
     put(state.throughput, block.throughput, to);
-    put(albedo, block.albedo, to);
+    put(lobe.color, block.color, to);
+    block.shape[to] = lobe.shape;
     block.key_0[to] = sampler.key()[0];
     block.key_1[to] = sampler.key()[1];
     block.reversed_index[to] = sampler.reversed_index();
-    batch.matte_states[to] = static_cast<std::uint32_t>(i);
-    if (block.size == MatteBlock::kSize) shade_matte(batch, bounce);
+    block.state[to] = static_cast<std::uint32_t>(i);
+    if (block.size == LobeBlock::kSize) shade_block(batch, lobe.kind, bounce);
 }
 
 /// Shades what has gathered, and empties the block.
-void PathTracer::shade_matte(PathBatch& batch, int bounce) const {
-    MatteBlock& block = batch.matte;
+void PathTracer::shade_block(PathBatch& batch, SingleLobe::Kind kind, int bounce) const {
+    LobeBlock& block = batch.lobes[static_cast<std::size_t>(kind)];
     if (block.size == 0) return;
-    const MatteTask task = matte_task(bounce);
+    const LobeTask task = lobe_task(kind, bounce);
     if (task.samples_lights) {
         prepare_light_samples(task, block);
         scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);
     }
-    scatter_matte(task, block);
+    scatter_lobes(task, block);
     for (std::uint64_t rest = block.casts_shadow_ray; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
         batch.shadow_rays.push_back({.origin = vec(block.shadow_origin, i),
                                      .direction = vec(block.shadow_direction, i),
                                      .t_max = block.light.distance[i] == kInfinity ? kInfinity : 1});
         batch.shadow_light.push_back(vec(block.shadow_light, i));
-        batch.shadow_parts.push_back(batch.states[batch.matte_states[i]].part);
+        batch.shadow_parts.push_back(batch.states[block.state[i]].part);
     }
     for (std::uint64_t rest = block.goes_on; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        const std::size_t from = batch.matte_states[i];
+        const std::size_t from = block.state[i];
         PathState& state = batch.next_states.emplace_back(batch.states[from]);
         if (light_tracer_) {
             const Ray& ray = batch.rays[from];
             const Interaction at(batch.points[from], scene_.packed_material(batch.hits[from].object), -ray.direction);
-            const BsdfSample sample{.wi = vec(block.next_local, i), .pdf = block.next_pdf[i]};
+            const BsdfSample sample{
+                .wi = vec(block.next_local, i), .pdf = block.next_pdf[i], .specular = is_delta(kind)};
             state.light_ratio = light_ratio(state, ray, at, vec(block.next_direction, i), sample, bounce);
         }
         state.throughput = vec(block.next_throughput, i);
         state.receiver = block.light.receiver(i);
-        state.bsdf_pdf = block.next_pdf[i];
+        state.bsdf_pdf = is_delta(kind) ? 0 : block.next_pdf[i];
         batch.next_rays.push_back({.origin = vec(block.next_origin, i), .direction = vec(block.next_direction, i)});
     }
     block.size = 0;

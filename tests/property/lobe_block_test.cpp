@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-// Diffuse surfaces shaded many at once and one by one: two programs for the same thing, and every bit must agree.
+// Surfaces shaded many at once and one by one: two programs for the same thing, and every bit must agree.
 
 namespace rayuela {
 namespace {
@@ -62,7 +62,7 @@ const Case kCases[] = {
      }},
 };
 
-Scene matte_scene(const Case& lit, SamplerKind sampler) {
+Scene plain_scene(const Case& lit, SamplerKind sampler) {
     Scene scene = empty_scene(45, 31);  // Blocks that are not full.
     scene.camera.position = Vec3(0, 2.5f, 7);
     scene.camera.target = Vec3(0, 0.8f, 0);
@@ -81,25 +81,36 @@ Scene matte_scene(const Case& lit, SamplerKind sampler) {
     Transform raised;
     raised.translate = Vec3(0, 0.5f, -0.6f);
     add_object(scene, Mesh{"torus", torus_mesh(10, 6)}, clay, raised);
+    add_object(scene, Sphere{Vec3(-0.4f, 0.35f, 2.2f), 0.35f},
+               add_material(scene, Dielectric{1.5f, {Color(0.9f, 1, 0.95f), nullptr}}));
+    add_object(scene, Sphere{Vec3(-0.4f, 0.35f, 2.2f), 0.3f}, add_material(scene, Dielectric{0.7f}));
+    add_object(scene, Sphere{Vec3(-1.3f, 0.3f, 2), 0.3f}, add_material(scene, Metal{{Color(0.8f), nullptr}}));
+    add_object(scene, Sphere{Vec3(0.8f, 0.3f, 2.4f), 0.3f},
+               add_material(scene, Metal{{Color(0), nullptr}, {0.5f, nullptr, 0}}));
+    const auto stripes = std::make_shared<const Image>(Image{2, 1, {Vec4(0), Vec4(0.9f)}, "stripes"});
+    add_object(scene, Quad{Vec3(-3, 0, -1), Vec3(0, 2, 0), Vec3(1, 0, -1)},
+               add_material(scene, Diffuse{{Color(1), stripes}}));
+    add_object(scene, Quad{Vec3(3, 0, -1), Vec3(0, 2, 0), Vec3(-1, 0, -1)},
+               add_material(scene, Metal{{Color(1), nullptr}, {1, stripes, 0}}));
     lit.light(scene, lamp);
     return scene;
 }
 
-class Matte : public ::testing::TestWithParam<Case> {};
+class LobeBlocks : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Matte, BlocksGiveTheBitsOfSinglePaths) {
+TEST_P(LobeBlocks, GiveTheBitsOfSinglePaths) {
     for (const SamplerKind sampler : {SamplerKind::sobol, SamplerKind::independent}) {
-        const Scene scene = matte_scene(GetParam(), sampler);
+        const Scene scene = plain_scene(GetParam(), sampler);
         for (const bool mis : {true, false}) {
             const auto blocks = render(scene, 5, {.mis = mis});
-            const auto singles = render(scene, 5, {.mis = mis, .shortcuts = {.matte_blocks = false}});
+            const auto singles = render(scene, 5, {.mis = mis, .shortcuts = {.lobe_blocks = false}});
             EXPECT_EQ(means(blocks->film()), means(singles->film()));
             EXPECT_GT(estimate(blocks->film()).mean, 0.01);
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, Matte, ::testing::ValuesIn(kCases), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(, LobeBlocks, ::testing::ValuesIn(kCases), [](const auto& test) {
     std::string name;
     for (const char c : std::string(test.param.name)) name += std::isalnum(c) ? c : '_';
     return name;
