@@ -45,12 +45,48 @@ constexpr double kRightAngle = 0x1p-16;
 /// Of the half diagonal: narrower ones are not looked at as rectangles, for their solid angle is lost in rounding.
 constexpr double kLeastSide = 1.0 / 64;
 
+/// AreaLight::near2.
+float near_distance2(const AreaLight& flat) {
+    const double u2 = glm::dot(Vec3d(flat.edge_u), Vec3d(flat.edge_u));
+    const double v2 = glm::dot(Vec3d(flat.edge_v), Vec3d(flat.edge_v));
+    const double span = (flat.kind == AreaLight::Kind::triangle ? 2.0 : 1.0) * flat.size;
+    const bool sliver = span * span < kLeastSine * kLeastSine * u2 * v2;
+    return sliver ? 0.0f : static_cast<float>(0.25 * kNear * kNear * (u2 + v2));
+}
+
+RectangleFrame rectangle_frame(const Vec3d& u, const Vec3d& v) {
+    const double width = glm::length(u), height = glm::length(v), unit = 0.5 * std::hypot(width, height);
+    if (std::abs(glm::dot(u, v)) > kRightAngle * width * height) return {};
+    if (!(std::min(width, height) >= kLeastSide * unit)) return {};
+    return {.x = Vec3(u / (width * unit)),
+            .y = Vec3(v / (height * unit)),
+            .z = Vec3(glm::normalize(glm::cross(u, v)) / unit),
+            .width = static_cast<float>(width / unit),
+            .height = static_cast<float>(height / unit),
+            .close2 = static_cast<float>(kClose * kClose * unit * unit)};
+}
+
 Vec2 sphere_uv(const Vec3& own) {
     const float longitude = std::atan2(-own.z, own.x) * (0.5f * kInvPi);
     return {longitude < 0 ? longitude + 1 : longitude, std::atan2(std::hypot(own.x, own.z), own.y) * kInvPi};
 }
 
 }  // namespace
+
+void AreaLight::place(Kind flat_kind, const Vec3& corner, const Vec3& u, const Vec3& v, bool inverted) {
+    kind = flat_kind;
+    origin = corner;
+    edge_u = u;
+    edge_v = v;
+    const Vec3d cross = glm::cross(Vec3d(u), Vec3d(v));
+    const double length = glm::length(cross);
+    if (length > 0 && std::isfinite(length)) {
+        normal = Vec3(cross / (inverted ? -length : length));
+        size = static_cast<float>(kind == Kind::triangle ? 0.5 * length : length);
+    }
+    near2 = near_distance2(*this);
+    if (kind == Kind::parallelogram) frame = rectangle_frame(Vec3d(u), Vec3d(v));
+}
 
 float AreaLight::area() const {
     return kind == Kind::sphere ? 4 * kPi * size * size : size;
@@ -103,42 +139,17 @@ Vec3 AreaLight::diagonal() const {
     return kind == Kind::triangle ? 0.5f * across : across;
 }
 
-float AreaLight::near2() const {
-    if (kind == Kind::sphere) return 0;
-    const double u2 = glm::dot(Vec3d(edge_u), Vec3d(edge_u)), v2 = glm::dot(Vec3d(edge_v), Vec3d(edge_v));
-    const double span = (kind == Kind::triangle ? 2.0 : 1.0) * size;
-    const bool sliver = span * span < kLeastSine * kLeastSine * u2 * v2;
-    return sliver ? 0.0f : static_cast<float>(0.25 * kNear * kNear * (u2 + v2));
-}
-
-RectangleFrame AreaLight::frame() const {
-    if (kind != Kind::parallelogram) return {};
-    const Vec3d u(edge_u), v(edge_v);
-    const double width = glm::length(u), height = glm::length(v), unit = 0.5 * std::hypot(width, height);
-    if (std::abs(glm::dot(u, v)) > kRightAngle * width * height) return {};
-    if (!(std::min(width, height) >= kLeastSide * unit)) return {};
-    return {.x = Vec3(u / (width * unit)),
-            .y = Vec3(v / (height * unit)),
-            .z = Vec3(glm::normalize(glm::cross(u, v)) / unit),
-            .width = static_cast<float>(width / unit),
-            .height = static_cast<float>(height / unit),
-            .close2 = static_cast<float>(kClose * kClose * unit * unit)};
-}
-
 std::optional<RectangleView> AreaLight::close_view(const Vec3& p) const {
-    if (kind != Kind::parallelogram) return std::nullopt;
     const Vec3 corner = origin - p, middle = corner + 0.5f * diagonal();
     const float distance2 = glm::dot(middle, middle);
-    if (!(distance2 < near2())) return std::nullopt;  // which is farther, and sooner known
-    const RectangleFrame axes = frame();
-    if (!(distance2 < axes.close2)) return std::nullopt;
-    const RectangleView view(axes, corner);
+    if (!(distance2 < near2 && distance2 < frame.close2)) return std::nullopt;
+    const RectangleView view(frame, corner);
     return view.z > kLeastHeight ? std::optional(view) : std::nullopt;
 }
 
 std::optional<CornerWarp> AreaLight::warp(const LightReceiver& receiver) const {
     const Vec3 corner = origin - receiver.p, across = diagonal(), middle = corner + 0.5f * across;
-    if (!(glm::dot(middle, middle) < near2())) return std::nullopt;
+    if (!(glm::dot(middle, middle) < near2)) return std::nullopt;
     const std::array<Vec3, 4> corners{corner, corner + edge_u, corner + edge_v, corner + across};
     std::array<float, 4> distance2{};
     for (std::size_t i = 0; i < 4; ++i) distance2[i] = glm::dot(corners[i], corners[i]);

@@ -32,6 +32,14 @@ struct AreaLight {
     float size = 0;             ///< Radius of a sphere, else area.
     Color radiance{0};          ///< Where it does not vary; else its mean over the surface.
     std::shared_ptr<const EmissionTexture> texture;
+    /// Square of the distance to its middle within which a flat light is near; 0 where it never is.
+    float near2 = 0;
+    /// Of a rectangle, in units of the half of its diagonal; else its close2 is 0.
+    RectangleFrame frame;
+
+    /// Makes it the flat light of this `kind` there: sets all that depends on its place. The front is the side that sees the
+    /// edges turn from `u` to `v` counterclockwise, or the other one if `inverted`. One without area keeps normal and size 0.
+    void place(Kind flat_kind, const Vec3& corner, const Vec3& u, const Vec3& v, bool inverted = false);
 
     float area() const;
     /// Emitted flux, mean over the channels.
@@ -65,10 +73,6 @@ struct AreaLight {
     /// From the corner of a flat light to the point that (1, 1) is mapped to: the corner across, or the middle of the side
     /// across.
     Vec3 diagonal() const;
-    /// Square of the distance to its middle within which a flat light is near; 0 where it never is.
-    float near2() const;
-    /// Of a rectangle, in units of the half of its diagonal; else its close2 is 0.
-    RectangleFrame frame() const;
 
 private:
     std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;

@@ -295,8 +295,8 @@ void FewLamps::add(const AreaLight& light) {
     put(light.point_error(), point_error, k);
     size[k] = light.size;
     area[k] = light.area();
-    near2[k] = light.near2();
-    const RectangleFrame frame = light.frame();
+    near2[k] = light.near2;
+    const RectangleFrame& frame = light.frame;
     put(frame.x, frame_x, k);
     put(frame.y, frame_y, k);
     put(frame.z, frame_z, k);

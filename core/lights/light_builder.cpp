@@ -5,8 +5,6 @@
 #include "core/math/sampler.h"
 #include "core/math/sampling.h"
 
-#include <cmath>
-
 namespace rayuela {
 namespace {
 
@@ -23,7 +21,8 @@ public:
     void operator()(const Sphere& sphere) {
         const std::optional<SphereD> world = world_sphere(sphere, to_world_);
         if (!world) return;
-        AreaLight light = make(AreaLight::Kind::sphere);
+        AreaLight light = make();
+        light.kind = AreaLight::Kind::sphere;
         light.origin = Vec3(world->center);
         light.size = static_cast<float>(world->radius);
         if (material_) {
@@ -75,9 +74,8 @@ public:
     }
 
 private:
-    AreaLight make(AreaLight::Kind kind) const {
+    AreaLight make() const {
         AreaLight light;
-        light.kind = kind;
         light.two_sided = two_sided_;
         light.radiance = radiance_;
         return light;
@@ -89,16 +87,8 @@ private:
 
     void flat(AreaLight::Kind kind, const Vec3& corner, const Vec3& u, const Vec3& v, bool inverted,
               const EmissionTexture& texture) {
-        AreaLight light = make(kind);
-        light.origin = corner;
-        light.edge_u = u;
-        light.edge_v = v;
-        const Vec3d cross = glm::cross(Vec3d(u), Vec3d(v));
-        const double length = glm::length(cross);
-        if (length > 0 && std::isfinite(length)) {
-            light.normal = Vec3(cross / (inverted != mirrored_ ? -length : length));
-            light.size = static_cast<float>(kind == AreaLight::Kind::triangle ? 0.5 * length : length);
-        }
+        AreaLight light = make();
+        light.place(kind, corner, u, v, inverted != mirrored_);
         if (material_) {
             const bool triangle = kind == AreaLight::Kind::triangle;
             set_texture(light, texture, triangle ? 16 : 256,

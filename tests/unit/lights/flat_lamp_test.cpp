@@ -35,10 +35,8 @@ double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 }
 
 AreaLight flat_lamp(AreaLight::Kind kind, const Vec3& origin, const Vec3& u, const Vec3& v) {
-    AreaLight light{.kind = kind, .two_sided = true, .origin = origin, .edge_u = u, .edge_v = v};
-    const Vec3d across = glm::cross(Vec3d(u), Vec3d(v));
-    light.normal = Vec3(glm::normalize(across));
-    light.size = static_cast<float>(glm::length(across) * (kind == AreaLight::Kind::triangle ? 0.5 : 1));
+    AreaLight light{.two_sided = true};
+    light.place(kind, origin, u, v);
     light.radiance = Color(1);
     return light;
 }
@@ -204,10 +202,7 @@ TEST(FlatLamp, PowersOfTwoOfScaleChangeNothing) {
         const auto expected = light.sample({p, n}, u);
         for (const float scale : {0x1p-20f, 0x1p+20f}) {
             AreaLight scaled = light;
-            scaled.origin *= scale;
-            scaled.edge_u *= scale;
-            scaled.edge_v *= scale;
-            scaled.size *= scale * scale;
+            scaled.place(light.kind, scale * light.origin, scale * light.edge_u, scale * light.edge_v);
             const auto s = scaled.sample({p * scale, n}, u);
             ASSERT_EQ(s.has_value(), expected.has_value());
             if (!s) continue;
