@@ -151,11 +151,7 @@ std::optional<CornerWarp> AreaLight::warp(const LightReceiver& receiver) const {
     const Vec3 corner = origin - receiver.p, across = diagonal(), middle = corner + 0.5f * across;
     if (!(glm::dot(middle, middle) < near2)) return std::nullopt;
     const std::array<Vec3, 4> corners{corner, corner + edge_u, corner + edge_v, corner + across};
-    std::array<float, 4> distance2{};
-    for (std::size_t i = 0; i < 4; ++i) distance2[i] = glm::dot(corners[i], corners[i]);
-    const float nearest2 = std::min(std::min(distance2[0], distance2[1]), std::min(distance2[2], distance2[3]));
-    if (!(nearest2 > 0)) return std::nullopt;
-    return corner_warp(corners, distance2, nearest2, receiver.n);
+    return corner_warp(corners, receiver.n);
 }
 
 Vec2 AreaLight::numbers_of(const Vec3& point) const {

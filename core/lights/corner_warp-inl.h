@@ -33,20 +33,24 @@ private:
     }
 };
 
-HWY_INLINE CornerWarpLanes corner_warp(const Vec3Lanes (&corners)[4], const Floats (&distance2)[4], Floats nearest2,
-                                       const Vec3Lanes& n) {
-    const Floats zero = hn::Zero(FloatTag()), one = all_lanes(1.0f);
+HWY_INLINE CornerWarpLanes corner_warp(const Vec3Lanes (&corners)[4], const Vec3Lanes& n) {
+    const Floats zero = hn::Zero(FloatTag()), one = all_lanes(1.0f), infinity = all_lanes(kInfinity);
+    Floats d2[4];
+    for (std::size_t i = 0; i < 4; ++i) d2[i] = dot(corners[i], corners[i]);
+    const Floats unit = one / hn::Max(hn::Max(d2[0], d2[1]), hn::Max(d2[2], d2[3]));
+    for (Floats& distance2 : d2) distance2 = distance2 * unit;
+    const Floats d01 = d2[0] * d2[1], d23 = d2[2] * d2[3];
+    const Floats closeness[] = {d2[1] * d23, d2[0] * d23, d01 * d2[3], d01 * d2[2]};
     const FloatMask everywhere = is_black(n);
     CornerWarpLanes warp;
     for (std::size_t i = 0; i < 4; ++i) {
-        const Floats closeness = nearest2 / distance2[i];
         const Floats height = hn::IfThenElse(everywhere, one, hn::Max(dot(n, corners[i]), zero));
-        warp.weights[i] = closeness * closeness * height;
+        warp.weights[i] = closeness[i] * closeness[i] * height;
     }
     const auto& w = warp.weights;
     const Floats most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
     const Floats scale = one / most;
-    const FloatMask any = hn::Lt(scale, all_lanes(kInfinity));
+    const FloatMask any = hn::And(hn::And(hn::Gt(unit, zero), hn::Lt(unit, infinity)), hn::Lt(scale, infinity));
     for (Floats& weight : warp.weights)
         weight = hn::IfThenElse(any, hn::Max(weight * scale, all_lanes(kLeastCornerShare)), one);
     return warp;

@@ -37,21 +37,26 @@ private:
 inline constexpr float kLeastCornerShare = 1.0f / 32;
 
 /// The points `corners` of a lamp, as seen from a receiver at the origin whose half space is that of unit `n` (0: all), by the
-/// light a diffuse receiver gets from there: n . d / d^4, but for what is the same all over a plane. `nearest2` is the
-/// smallest of the squares `distance2`, and positive.
-inline CornerWarp corner_warp(const std::array<Vec3, 4>& corners, const std::array<float, 4>& distance2, float nearest2,
-                              const Vec3& n) {
+/// light a diffuse receiver gets from there: n . d / d^4, but for what is the same all over a plane.
+inline CornerWarp corner_warp(const std::array<Vec3, 4>& corners, const Vec3& n) {
+    std::array<float, 4> d2{};
+    for (std::size_t i = 0; i < 4; ++i) d2[i] = glm::dot(corners[i], corners[i]);
+    const float unit = 1 / std::max(std::max(d2[0], d2[1]), std::max(d2[2], d2[3]));
+    for (float& distance2 : d2) distance2 *= unit;
+    // In proportion to 1 / d^2 without a division a corner: times the product of all.
+    const float d01 = d2[0] * d2[1], d23 = d2[2] * d2[3];
+    const std::array<float, 4> closeness{d2[1] * d23, d2[0] * d23, d01 * d2[3], d01 * d2[2]};
     const bool facing = !is_black(n);
     CornerWarp warp;
     for (std::size_t i = 0; i < 4; ++i) {
-        const float closeness = nearest2 / distance2[i];
         const float height = facing ? std::max(glm::dot(n, corners[i]), 0.0f) : 1.0f;
-        warp.weights[i] = closeness * closeness * height;
+        warp.weights[i] = closeness[i] * closeness[i] * height;
     }
     const std::array<float, 4>& w = warp.weights;
     const float most = std::max(std::max(w[0], w[1]), std::max(w[2], w[3]));
     const float scale = 1 / most;
-    if (!(scale < kInfinity)) return {};
+    if (!(unit > 0 && unit < kInfinity && scale < kInfinity))
+        return {};  // beyond the range of float, or below the horizon
     for (float& weight : warp.weights) weight = std::max(weight * scale, kLeastCornerShare);
     return warp;
 }

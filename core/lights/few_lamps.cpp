@@ -197,11 +197,7 @@ private:
     HWY_INLINE void warp(const Vec3Lanes& corner, const Vec3Lanes& across, const Vec3Lanes& n, FloatMask near,
                          Numbers& numbers) const {
         const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v), corner + across};
-        Floats distance2[4];
-        for (std::size_t i = 0; i < 4; ++i) distance2[i] = dot(corners[i], corners[i]);
-        const Floats nearest2 = hn::Min(hn::Min(distance2[0], distance2[1]), hn::Min(distance2[2], distance2[3]));
-        near = hn::And(near, hn::Gt(nearest2, hn::Zero(FloatTag())));
-        const CornerWarpLanes warp = corner_warp(corners, distance2, nearest2, n);
+        const CornerWarpLanes warp = corner_warp(corners, n);
         const Vec2Lanes bent = warp.sample(numbers.u);
         numbers.u = {hn::IfThenElse(near, bent.x, numbers.u.x), hn::IfThenElse(near, bent.y, numbers.u.y)};
         numbers.area = hn::IfThenElse(near, warp.density(bent), numbers.area);
