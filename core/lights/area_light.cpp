@@ -1,5 +1,7 @@
 #include "core/lights/area_light.h"
 
+#include "core/lights/corner_warp.h"
+#include "core/lights/triangle_view.h"
 #include "core/materials/bsdf.h"
 #include "core/math/basis.h"
 #include "core/math/float_error.h"
@@ -38,11 +40,12 @@ constexpr float kNear = 5;
 /// Of edges that are closer to parallel than this sine the numbers of a point are lost in its rounding.
 constexpr double kLeastSine = 1.0 / 64;
 
-/// A rectangle is close up to so many times the half of its diagonal. Farther away its corners say as much for less time.
+/// A rectangle or triangle is close up to so many times the half of its diagonal. Farther away its corners say as much for
+/// less time.
 constexpr double kClose = 2;
 /// The cosine of edges that stand at right angles but for the rounding of corners 2^7 sizes away from the origin.
 constexpr double kRightAngle = 0x1p-16;
-/// Of the half diagonal: narrower ones are not looked at as rectangles, for their solid angle is lost in rounding.
+/// Of the half diagonal: narrower ones are not looked at as such, for their solid angle is lost in rounding.
 constexpr double kLeastSide = 1.0 / 64;
 
 /// AreaLight::near2.
@@ -54,16 +57,29 @@ float near_distance2(const AreaLight& flat) {
     return sliver ? 0.0f : static_cast<float>(0.25 * kNear * kNear * (u2 + v2));
 }
 
+/// Half the diagonal of the parallelogram of these edges, if it had right angles.
+double half_diagonal(const Vec3d& u, const Vec3d& v) {
+    return 0.5 * std::sqrt(glm::dot(u, u) + glm::dot(v, v));
+}
+
+bool looks_like_triangle(const Vec3d& u, const Vec3d& v) {
+    const double longest = std::max({glm::length(u), glm::length(v), glm::length(v - u)});
+    return glm::length(glm::cross(u, v)) >= kLeastSide * half_diagonal(u, v) * longest;
+}
+
+bool looks_like_rectangle(const Vec3d& u, const Vec3d& v) {
+    const double width = glm::length(u), height = glm::length(v);
+    return std::abs(glm::dot(u, v)) <= kRightAngle * width * height &&
+           std::min(width, height) >= kLeastSide * half_diagonal(u, v);
+}
+
 RectangleFrame rectangle_frame(const Vec3d& u, const Vec3d& v) {
-    const double width = glm::length(u), height = glm::length(v), unit = 0.5 * std::hypot(width, height);
-    if (std::abs(glm::dot(u, v)) > kRightAngle * width * height) return {};
-    if (!(std::min(width, height) >= kLeastSide * unit)) return {};
+    const double width = glm::length(u), height = glm::length(v), unit = half_diagonal(u, v);
     return {.x = Vec3(u / (width * unit)),
             .y = Vec3(v / (height * unit)),
             .z = Vec3(glm::normalize(glm::cross(u, v)) / unit),
             .width = static_cast<float>(width / unit),
-            .height = static_cast<float>(height / unit),
-            .close2 = static_cast<float>(kClose * kClose * unit * unit)};
+            .height = static_cast<float>(height / unit)};
 }
 
 Vec2 sphere_uv(const Vec3& own) {
@@ -85,7 +101,12 @@ void AreaLight::place(Kind flat_kind, const Vec3& corner, const Vec3& u, const V
         size = static_cast<float>(kind == Kind::triangle ? 0.5 * length : length);
     }
     near2 = near_distance2(*this);
-    if (kind == Kind::parallelogram) frame = rectangle_frame(Vec3d(u), Vec3d(v));
+    const Vec3d du(u), dv(v);
+    if (near2 > 0 && (kind == Kind::triangle ? looks_like_triangle(du, dv) : looks_like_rectangle(du, dv))) {
+        const double reach = kClose * half_diagonal(du, dv);
+        close2 = static_cast<float>(reach * reach);
+        if (kind == Kind::parallelogram) frame = rectangle_frame(du, dv);
+    }
 }
 
 float AreaLight::area() const {
@@ -139,12 +160,23 @@ Vec3 AreaLight::diagonal() const {
     return kind == Kind::triangle ? 0.5f * across : across;
 }
 
-std::optional<RectangleView> AreaLight::close_view(const Vec3& p) const {
-    const Vec3 corner = origin - p, middle = corner + 0.5f * diagonal();
-    const float distance2 = glm::dot(middle, middle);
-    if (!(distance2 < near2 && distance2 < frame.close2)) return std::nullopt;
-    const RectangleView view(frame, corner);
+bool AreaLight::close(const Vec3& p) const {
+    const Vec3 middle = (origin - p) + 0.5f * diagonal();
+    return glm::dot(middle, middle) < close2;
+}
+
+std::optional<RectangleView> AreaLight::rectangle_view(const Vec3& p) const {
+    if (kind != Kind::parallelogram || !close(p)) return std::nullopt;
+    const RectangleView view(frame, origin - p);
     return view.z > kLeastHeight ? std::optional(view) : std::nullopt;
+}
+
+std::optional<TriangleView> AreaLight::triangle_view(const Vec3& p) const {
+    if (kind != Kind::triangle || !close(p)) return std::nullopt;
+    const Vec3 corner = origin - p;
+    const float height = std::abs(glm::dot(corner, normal));
+    if (!(height * height > kLeastHeight2 * close2)) return std::nullopt;
+    return TriangleView({corner, corner + edge_u, corner + edge_v}, size, height);
 }
 
 std::optional<CornerWarp> AreaLight::warp(const LightReceiver& receiver) const {
@@ -162,17 +194,20 @@ Vec2 AreaLight::numbers_of(const Vec3& point) const {
 }
 
 std::optional<LightSample> AreaLight::sample_flat(const LightReceiver& receiver, const Vec2& u) const {
-    if (const std::optional<RectangleView> view = close_view(receiver.p)) {
-        const float angle = view->solid_angle();
-        const Vec2 position = view->sample(u, angle);
-        return finish(receiver.p, origin + position.x * edge_u + position.y * edge_v, normal, {1 / angle, 1},
+    const auto sample_at = [&](const Vec2& position, const Density& density) {
+        return finish(receiver.p, origin + position.x * edge_u + position.y * edge_v, normal, density,
                       radiance_at(position));
-    }
+    };
+    const auto sample_view = [&](const auto& view) {
+        const float angle = view.solid_angle();
+        return sample_at(view.sample(u, angle), {1 / angle, 1});
+    };
+    if (const auto view = rectangle_view(receiver.p)) return sample_view(*view);
+    if (const auto view = triangle_view(receiver.p)) return sample_view(*view);
     const std::optional<CornerWarp> bent = warp(receiver);
     const Vec2 numbers = bent ? bent->sample(u) : u;
-    const Vec2 position = kind == Kind::triangle ? sample_uniform_triangle(numbers) : numbers;
-    return finish(receiver.p, origin + position.x * edge_u + position.y * edge_v, normal,
-                  {0, bent ? bent->density(numbers) : 1}, radiance_at(position));
+    return sample_at(kind == Kind::triangle ? sample_uniform_triangle(numbers) : numbers,
+                     {0, bent ? bent->density(numbers) : 1});
 }
 
 std::optional<LightSample> AreaLight::finish(const Vec3& p, const Vec3& point, const Vec3& n, const Density& density,
@@ -217,7 +252,8 @@ AreaLight::SurfaceSample AreaLight::sample_surface(const Vec2& u, float u_side) 
 
 float AreaLight::pdf(const LightReceiver& receiver, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const {
     if (glm::dot(ng, wi) >= 0 && !two_sided) return 0;
-    if (const std::optional<RectangleView> view = close_view(receiver.p)) return 1 / view->solid_angle();
+    if (const auto view = rectangle_view(receiver.p)) return 1 / view->solid_angle();
+    if (const auto view = triangle_view(receiver.p)) return 1 / view->solid_angle();
     float density = area_pdf(receiver.p, hit_point, wi, ng, area());
     if (kind == Kind::sphere) {
         if (const std::optional<Cone> cone = cone_of(*this, receiver.p)) return uniform_cone_pdf(cone->one_minus_cos);

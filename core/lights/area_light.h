@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/lights/corner_warp.h"
 #include "core/lights/light_importance.h"
 #include "core/lights/light_sample.h"
 #include "core/lights/rectangle_view.h"
@@ -11,6 +10,10 @@
 #include <optional>
 
 namespace rayuela {
+
+struct CornerWarp;
+struct RectangleView;
+class TriangleView;
 
 /// Emission that varies over a light.
 struct EmissionTexture {
@@ -32,10 +35,10 @@ struct AreaLight {
     float size = 0;             ///< Radius of a sphere, else area.
     Color radiance{0};          ///< Where it does not vary; else its mean over the surface.
     std::shared_ptr<const EmissionTexture> texture;
-    /// Square of the distance to its middle within which a flat light is near; 0 where it never is.
-    float near2 = 0;
-    /// Of a rectangle, in units of the half of its diagonal; else its close2 is 0.
-    RectangleFrame frame;
+    /// Squares of the distances to its middle within which a flat light is near, and within which it is worth while to look
+    /// at it as a rectangle or triangle; 0 where it never is.
+    float near2 = 0, close2 = 0;
+    RectangleFrame frame;  ///< In units of the half of its diagonal, where a parallelogram may be close.
 
     /// Makes it the flat light of this `kind` there: sets all that depends on its place. The front is the side that sees the
     /// edges turn from `u` to `v` counterclockwise, or the other one if `inverted`. One without area keeps normal and size 0.
@@ -50,7 +53,7 @@ struct AreaLight {
 
     /// A point of the light that shines towards the receiver, and its density per solid angle there: spheres by the cone they
     /// fill (from inside by area), all others by area, if near by what their corners send to the receiver, and close
-    /// rectangles evenly over their solid angle.
+    /// rectangles and triangles evenly over their solid angle.
     std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
     /// Density with which `sample` draws the unit direction `wi`, which meets this light at `hit_point` with unit front
     /// normal `ng`.
@@ -77,8 +80,10 @@ struct AreaLight {
 private:
     std::optional<LightSample> sample_sphere(const Vec3& p, const Vec2& u) const;
     std::optional<LightSample> sample_flat(const LightReceiver& receiver, const Vec2& u) const;
-    /// Where `p` is close to a rectangle.
-    std::optional<RectangleView> close_view(const Vec3& p) const;
+    /// Where `p` is close to it.
+    std::optional<RectangleView> rectangle_view(const Vec3& p) const;
+    std::optional<TriangleView> triangle_view(const Vec3& p) const;
+    bool close(const Vec3& p) const;
     /// How to draw numbers for a near light.
     std::optional<CornerWarp> warp(const LightReceiver& receiver) const;
     /// The numbers that a point of a flat light is drawn by.

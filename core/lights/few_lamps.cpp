@@ -10,6 +10,7 @@
 #include "core/lights/corner_warp-inl.h"
 #include "core/lights/light_importance-inl.h"
 #include "core/lights/rectangle_view-inl.h"
+#include "core/lights/triangle_view-inl.h"
 #include "core/math/float_error.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -162,57 +163,74 @@ public:
     }
 
 private:
-    /// Numbers for a point of a flat lamp.
-    struct Numbers {
-        Vec2Lanes u;
+    /// A place on a flat lamp, as shares of its edges.
+    struct Position {
+        Vec2Lanes at;
         Floats solid_angle, area;  ///< As in AreaLight::Density.
+
+        HWY_INLINE void set(FloatMask mask, const Vec2Lanes& position) {
+            at = {hn::IfThenElse(mask, position.x, at.x), hn::IfThenElse(mask, position.y, at.y)};
+        }
     };
 
     /// As AreaLight::sample_flat has it.
     HWY_INLINE LampPoints flat_points(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
-        const Numbers numbers = flat_numbers(p, n, u);
-        const Vec2Lanes folded = sample_uniform_triangle(numbers.u);
-        const FloatMask triangle = is(lamps_.is_triangle);
-        const Floats x = hn::IfThenElse(triangle, folded.x, numbers.u.x);
-        const Floats y = hn::IfThenElse(triangle, folded.y, numbers.u.y);
-        return {of(lamps_.origin) + of(lamps_.edge_u) * x + of(lamps_.edge_v) * y, of(lamps_.normal),
-                numbers.solid_angle, numbers.area};
+        const Position position = flat_position(p, n, u);
+        return {of(lamps_.origin) + of(lamps_.edge_u) * position.at.x + of(lamps_.edge_v) * position.at.y,
+                of(lamps_.normal), position.solid_angle, position.area};
     }
 
-    HWY_INLINE Numbers flat_numbers(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
+    HWY_INLINE Position flat_position(const Vec3Lanes& p, const Vec3Lanes& n, const Vec2Lanes& u) const {
         const FloatTag d;
-        Numbers numbers{u, hn::Zero(d), all_lanes(1.0f)};
+        Position position{u, hn::Zero(d), all_lanes(1.0f)};
         const Vec3Lanes corner = of(lamps_.origin) - p, across = of(lamps_.diagonal);
         const Vec3Lanes middle = corner + across * all_lanes(0.5f);
         const Floats distance2 = dot(middle, middle);
-        const FloatMask near = hn::Lt(distance2, of(lamps_.near2));
-        if (hn::AllFalse(d, near)) return numbers;
-        warp(corner, across, n, near, numbers);
-        const FloatMask close = hn::And(near, hn::Lt(distance2, of(lamps_.close2)));
-        if (!hn::AllFalse(d, close)) view(corner, u, close, numbers);
-        return numbers;
+        const FloatMask near = hn::Lt(distance2, of(lamps_.near2)), triangle = is(lamps_.is_triangle);
+        const FloatMask close = hn::Lt(distance2, of(lamps_.close2));
+        const FloatMask close_rectangle = hn::AndNot(triangle, close), close_triangle = hn::And(triangle, close);
+        if (!hn::AllFalse(d, close_rectangle)) view_rectangle(corner, u, close_rectangle, position);
+        if (!hn::AllFalse(d, close_triangle)) view_triangle(corner, u, close_triangle, position);
+        const FloatMask viewed = hn::Gt(position.solid_angle, hn::Zero(d));
+        const FloatMask bent = hn::AndNot(viewed, near);
+        if (!hn::AllFalse(d, bent)) warp(corner, across, n, bent, position);
+        if (lamps_.any_triangle) position.set(hn::AndNot(viewed, triangle), sample_uniform_triangle(position.at));
+        return position;
     }
 
-    /// As AreaLight::warp has it.
-    HWY_INLINE void warp(const Vec3Lanes& corner, const Vec3Lanes& across, const Vec3Lanes& n, FloatMask near,
-                         Numbers& numbers) const {
-        const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v), corner + across};
-        const CornerWarpLanes warp = corner_warp(corners, n);
-        const Vec2Lanes bent = warp.sample(numbers.u);
-        numbers.u = {hn::IfThenElse(near, bent.x, numbers.u.x), hn::IfThenElse(near, bent.y, numbers.u.y)};
-        numbers.area = hn::IfThenElse(near, warp.density(bent), numbers.area);
-    }
-
-    /// As AreaLight::close_view has it.
-    HWY_INLINE void view(const Vec3Lanes& corner, const Vec2Lanes& u, FloatMask close, Numbers& numbers) const {
+    /// As AreaLight::rectangle_view has it.
+    HWY_INLINE void view_rectangle(const Vec3Lanes& corner, const Vec2Lanes& u, FloatMask close,
+                                   Position& position) const {
         const RectangleFrameLanes frame{of(lamps_.frame_x), of(lamps_.frame_y), of(lamps_.frame_z),
                                         of(lamps_.frame_width), of(lamps_.frame_height)};
         const RectangleViewLanes view(frame, corner);
-        close = hn::And(close, hn::Gt(view.z, all_lanes(kLeastHeight)));
+        sample_view(view, u, hn::And(close, hn::Gt(view.z, all_lanes(kLeastHeight))), position);
+    }
+
+    /// As AreaLight::triangle_view has it.
+    HWY_INLINE void view_triangle(const Vec3Lanes& corner, const Vec2Lanes& u, FloatMask close,
+                                  Position& position) const {
+        const Floats height = hn::Abs(dot(corner, of(lamps_.normal)));
+        const FloatMask above = hn::Gt(height * height, all_lanes(kLeastHeight2) * of(lamps_.close2));
+        const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v)};
+        sample_view(TriangleViewLanes(corners, of(lamps_.size), height), u, hn::And(close, above), position);
+    }
+
+    template <typename View>
+    static HWY_INLINE void sample_view(const View& view, const Vec2Lanes& u, FloatMask here, Position& position) {
         const Floats angle = view.solid_angle();
-        const Vec2Lanes position = view.sample(u, angle);
-        numbers.u = {hn::IfThenElse(close, position.x, numbers.u.x), hn::IfThenElse(close, position.y, numbers.u.y)};
-        numbers.solid_angle = hn::IfThenElseZero(close, all_lanes(1.0f) / angle);
+        position.set(here, view.sample(u, angle));
+        position.solid_angle = hn::IfThenElse(here, all_lanes(1.0f) / angle, position.solid_angle);
+    }
+
+    /// As AreaLight::warp has it.
+    HWY_INLINE void warp(const Vec3Lanes& corner, const Vec3Lanes& across, const Vec3Lanes& n, FloatMask here,
+                         Position& position) const {
+        const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v), corner + across};
+        const CornerWarpLanes warp = corner_warp(corners, n);
+        const Vec2Lanes bent = warp.sample(position.at);
+        position.set(here, bent);
+        position.area = hn::IfThenElse(here, warp.density(bent), position.area);
     }
 
     const FewLamps& lamps_;
@@ -281,7 +299,9 @@ std::optional<FewLamps> FewLamps::of(std::span<const AreaLight> lights, const Li
 void FewLamps::add(const AreaLight& light) {
     const std::size_t k = count++;
     const bool sphere = light.kind == AreaLight::Kind::sphere;
+    const bool triangle = light.kind == AreaLight::Kind::triangle;
     (sphere ? any_sphere : any_flat) = true;
+    any_triangle |= triangle;
     put(light.origin, origin, k);
     put(light.edge_u, edge_u, k);
     put(light.edge_v, edge_v, k);
@@ -292,15 +312,15 @@ void FewLamps::add(const AreaLight& light) {
     size[k] = light.size;
     area[k] = light.area();
     near2[k] = light.near2;
+    close2[k] = light.close2;
     const RectangleFrame& frame = light.frame;
     put(frame.x, frame_x, k);
     put(frame.y, frame_y, k);
     put(frame.z, frame_z, k);
     frame_width[k] = frame.width;
     frame_height[k] = frame.height;
-    close2[k] = frame.close2;
     is_sphere[k] = sphere ? 1 : 0;
-    is_triangle[k] = light.kind == AreaLight::Kind::triangle ? 1 : 0;
+    is_triangle[k] = triangle ? 1 : 0;
     two_sided[k] = light.two_sided ? 1 : 0;
 }
 

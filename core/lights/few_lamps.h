@@ -25,15 +25,15 @@ public:
     void sample(LightBlock& block) const;
 
     std::size_t count = 0;
-    bool any_sphere = false, any_flat = false;
+    bool any_sphere = false, any_flat = false, any_triangle = false;
 
     LightClusters clusters;  ///< One lamp a lane. Unused where there is but one.
 
     /// As in AreaLight.
     Rows origin{}, edge_u{}, edge_v{}, diagonal{}, normal{}, radiance{}, point_error{};
-    Row size{}, area{}, near2{};
+    Row size{}, area{}, near2{}, close2{};
     Rows frame_x{}, frame_y{}, frame_z{};  ///< As in RectangleFrame.
-    Row frame_width{}, frame_height{}, close2{};
+    Row frame_width{}, frame_height{};
     Row is_sphere{}, is_triangle{}, two_sided{};  ///< 1 or 0.
 
 private:

@@ -28,8 +28,6 @@ inline float angle_of(float x, float y) {
 struct RectangleFrame {
     Vec3 x{0}, y{0}, z{0};
     float width = 0, height = 0;
-    /// Square of the distance to its middle within which it is worth while to look at it as a rectangle.
-    float close2 = 0;
 };
 
 /// Closer to its plane than this a rectangle is not looked at as such: differences of nearly equal sines would decide.

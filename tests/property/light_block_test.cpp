@@ -60,6 +60,10 @@ LightReceiver random_receiver(const Lamps& lamps, Random& random) {
     const auto* sphere = std::get_if<Sphere>(&shape);
     if (const auto* quad = std::get_if<Quad>(&shape); quad && random.integer(0, 1) == 0)
         receiver.p = quad->point + 0.5f * (quad->u + quad->v) + std::exp2(random.uniform(-3, 2)) * random.direction();
+    if (const auto* triangle = std::get_if<Triangle>(&shape); triangle && random.integer(0, 1) == 0) {
+        const auto& c = triangle->vertices;
+        receiver.p = (c[0] + c[1] + c[2]) / 3.0f + std::exp2(random.uniform(-3, 2)) * random.direction();
+    }
     if (sphere && random.integer(0, 1) == 0)
         receiver.p = sphere->center + sphere->radius * std::exp2(random.uniform(-3, 3)) * random.direction();
     return receiver;

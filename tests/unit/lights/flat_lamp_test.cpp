@@ -1,4 +1,6 @@
 #include "core/lights/area_light.h"
+#include "core/lights/corner_warp.h"
+#include "core/lights/triangle_view.h"
 #include "core/math/sampler.h"
 #include "tests/statistics.h"
 #include "tests/support/accel_scenes.h"
