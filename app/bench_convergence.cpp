@@ -1,6 +1,6 @@
 #include "app/bench_convergence.h"
 
-#include "app/cpu_clock.h"
+#include "app/clocks.h"
 #include "app/subcommands.h"
 #include "core/io/image_io.h"
 #include "core/render/progressive_renderer.h"

@@ -2,6 +2,7 @@
 
 #include "core/math/sampling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -117,14 +118,20 @@ std::shared_ptr<const TriangleMesh> make_land(std::uint32_t quads_a_side) {
     return sketch.finish();
 }
 
-std::shared_ptr<const TriangleMesh> make_land_1m() {
-    return make_land(707);
-}
-std::shared_ptr<const TriangleMesh> make_land_6m() {
-    return make_land(1732);
-}
-
 }  // namespace
+
+BenchMesh bench_land(std::string name, std::size_t triangles) {
+    const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
+    return {.name = std::move(name),
+            .description = "open displaced land",
+            .make = [side] { return make_land(std::max(side, 1u)); },
+            .eye = {9, 4, 9},
+            .target = {0, 0, 0},
+            .field_of_view = 45,
+            .light_corner = {-4, 12, -2},
+            .light_u = {2, 0, 0},
+            .light_v = {0, 0, 2}};
+}
 
 std::vector<BenchMesh> bench_meshes() {
     const Vec3 x(1, 0, 0), z(0, 0, 1);
@@ -147,8 +154,8 @@ std::vector<BenchMesh> bench_meshes() {
          {-2, 4.9f, -1},
          4.0f * x,
          2.0f * z},
-        {"land1m", "1M, open displaced land", make_land_1m, {9, 4, 9}, {0, 0, 0}, 45, {-4, 12, -2}, 2.0f * x, 2.0f * z},
-        {"land6m", "6M, open displaced land", make_land_6m, {9, 4, 9}, {0, 0, 0}, 45, {-4, 12, -2}, 2.0f * x, 2.0f * z},
+        bench_land("land1m", 1'000'000),
+        bench_land("land6m", 6'000'000),
     };
 }
 

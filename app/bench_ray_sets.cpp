@@ -19,7 +19,7 @@ public:
     std::vector<Ray> primary(int side) {
         constexpr int kBlock = 16;
         const Vec3 forward = glm::normalize(view_.target - view_.eye);
-        const Vec3 right = glm::normalize(glm::cross(forward, Vec3(0, 1, 0))), up = glm::cross(right, forward);
+        const Vec3 right = glm::normalize(glm::cross(forward, view_.up)), up = glm::cross(right, forward);
         const float half = std::tan(glm::radians(view_.field_of_view) / 2);
         std::vector<Ray> rays;
         const auto add = [&](int column, int row) {

@@ -16,6 +16,8 @@ struct RaySet {
     std::vector<Ray> rays;
 
     bool any_hit() const { return kind == RayKind::shadow || kind == RayKind::shadow_from_bounce; }
+    /// Whether neighbours go the same way.
+    bool coherent() const { return kind == RayKind::primary || kind == RayKind::shadow; }
 };
 
 /// Camera rays of `side` x `side` pixels in blocks of 16 x 16, diffuse bounces and shadow rays from where they arrive.

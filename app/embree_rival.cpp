@@ -1,9 +1,10 @@
 #include "app/embree_rival.h"
 
-#include "app/cpu_clock.h"
+#include "app/clocks.h"
 
 #include <algorithm>
 #include <atomic>
+#include <string>
 
 #ifdef RAYUELA_EMBREE3
 #include <embree3/rtcore.h>
@@ -100,19 +101,21 @@ EmbreeMode EmbreeQuery::mode() const {
 }
 
 struct EmbreeRival::Scene {
-    RTCDevice device = rtcNewDevice("");
-    RTCScene scene = rtcNewScene(device);
+    RTCDevice device;
+    RTCScene scene;
     std::atomic<std::int64_t> bytes{0};
 
+    explicit Scene(int threads)
+        : device(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())), scene(rtcNewScene(device)) {}
     ~Scene() {
         rtcReleaseScene(scene);
         rtcReleaseDevice(device);
     }
 };
 
-std::unique_ptr<const EmbreeRival> EmbreeRival::build(const TriangleMesh& mesh, bool robust) {
+std::unique_ptr<const EmbreeRival> EmbreeRival::build(const TriangleMesh& mesh, bool robust, int threads) {
     std::unique_ptr<EmbreeRival> rival(new EmbreeRival);
-    rival->scene_ = std::make_unique<Scene>();
+    rival->scene_ = std::make_unique<Scene>(threads);
     Scene& scene = *rival->scene_;
     rtcSetDeviceMemoryMonitorFunction(
         scene.device,
@@ -129,12 +132,15 @@ std::unique_ptr<const EmbreeRival> EmbreeRival::build(const TriangleMesh& mesh, 
     auto* indices = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
     for (const glm::uvec3& t : mesh.triangles) indices = std::copy(&t.x, &t.x + 3, indices);
-    const double cpu_start = process_cpu_seconds();
+    const std::int64_t mesh_bytes = scene.bytes;
+    const double cpu_start = process_cpu_seconds(), wall_start = wall_seconds();
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene.scene);
     rival->build_cpu_seconds_ = process_cpu_seconds() - cpu_start;
+    rival->build_wall_seconds_ = wall_seconds() - wall_start;
+    rival->memory_bytes_ = static_cast<std::uint64_t>(scene.bytes - mesh_bytes);
     return rival;
 }
 
@@ -180,10 +186,6 @@ void EmbreeRival::trace(EmbreeQuery& query, std::size_t begin, std::size_t end) 
     }
 }
 
-std::uint64_t EmbreeRival::memory_bytes() const {
-    return static_cast<std::uint64_t>(scene_->bytes.load());
-}
-
 #else
 
 struct EmbreeQuery::Rays {};
@@ -199,13 +201,10 @@ float EmbreeQuery::t(std::size_t) const {
 EmbreeMode EmbreeQuery::mode() const {
     return EmbreeMode::single;
 }
-std::unique_ptr<const EmbreeRival> EmbreeRival::build(const TriangleMesh&, bool) {
+std::unique_ptr<const EmbreeRival> EmbreeRival::build(const TriangleMesh&, bool, int) {
     return nullptr;
 }
 void EmbreeRival::trace(EmbreeQuery&, std::size_t, std::size_t) const {}
-std::uint64_t EmbreeRival::memory_bytes() const {
-    return 0;
-}
 
 #endif
 

@@ -38,20 +38,23 @@ private:
 /// Embree over one mesh: a rival to time and a second opinion.
 class EmbreeRival {
 public:
-    /// Null where Embree 3 was not there at build time.
-    static std::unique_ptr<const EmbreeRival> build(const TriangleMesh& mesh, bool robust);
+    /// Null where Embree 3 was not there at build time. Builds with so many threads; 0: with all.
+    static std::unique_ptr<const EmbreeRival> build(const TriangleMesh& mesh, bool robust, int threads = 0);
     ~EmbreeRival();
 
     /// Traces rays [begin, end) of the query; both are multiples of 16 or the very end.
     void trace(EmbreeQuery& query, std::size_t begin, std::size_t end) const;
     double build_cpu_seconds() const { return build_cpu_seconds_; }
-    std::uint64_t memory_bytes() const;
+    double build_wall_seconds() const { return build_wall_seconds_; }
+    /// Of what was built, beside the vertices and the triangles themselves.
+    std::uint64_t memory_bytes() const { return memory_bytes_; }
 
 private:
     struct Scene;
     EmbreeRival();
     std::unique_ptr<Scene> scene_;
-    double build_cpu_seconds_ = 0;
+    double build_cpu_seconds_ = 0, build_wall_seconds_ = 0;
+    std::uint64_t memory_bytes_ = 0;
 };
 
 }  // namespace rayuela

@@ -1,6 +1,7 @@
 #include "app/skip_gains.h"
 
-#include "app/cpu_clock.h"
+#include "app/clocks.h"
+#include "app/median_ratio.h"
 #include "core/render/progressive_renderer.h"
 
 #include <algorithm>
@@ -50,14 +51,6 @@ std::vector<PutBack> put_back_each(const std::shared_ptr<const Scene>& scene, co
     return all;
 }
 
-Measured ratio(std::span<const double> with, std::span<const double> without) {
-    return bootstrap(with.size(), [&](std::span<const std::size_t> taken) {
-        std::vector<double> ratios;
-        for (const std::size_t i : taken) ratios.push_back(with[i] / without[i]);
-        return median(std::move(ratios));
-    });
-}
-
 }  // namespace
 
 Scene shrunk(Scene scene, int side) {
@@ -82,7 +75,7 @@ Result<std::vector<SkipGain>> measure_skips(const Scene& scene, const SkipGainOp
     for (PutBack& other : others) {
         if (other.contestant->frame()->image.pixels != expected->image.pixels)
             return fail("", std::string(other.gain.skip), "putting this back changes the image");
-        other.gain.ratio = ratio(other.contestant->seconds, plain.seconds);
+        other.gain.ratio = median_ratio(other.contestant->seconds, plain.seconds);
         gains.push_back(other.gain);
     }
     return gains;
