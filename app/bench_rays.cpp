@@ -108,6 +108,17 @@ private:
                                      {"bytes_per_triangle", a_triangle}});
     }
 
+    /// The list answers every so many rays alone.
+    std::size_t stride(std::size_t rays) const {
+        constexpr std::size_t kTests = 1'000'000'000, kLeast = 256;
+        return std::max<std::size_t>(1, rays / std::max(kLeast, kTests / mesh_->triangles.size()));
+    }
+    static std::vector<Ray> every_nth(std::span<const Ray> rays, std::size_t n) {
+        std::vector<Ray> some;
+        for (std::size_t i = 0; i < rays.size(); i += n) some.push_back(rays[i]);
+        return some;
+    }
+
     Result<void> measure(const RaySet& set, TextTable& table) {
         const std::size_t n = set.rays.size();
         std::vector<RayAnswers> answers(tracers_.size(), RayAnswers(n));
@@ -117,12 +128,11 @@ private:
                 {tracers_[k].name, [this, k] { use_instruction_set(tracers_[k].isa); },
                  [&, k] { answers[k].trace(*tracers_[k].accelerator, set.rays, set.any_hit(), 0, n); }, n});
         }
-        const std::size_t few =
-            std::min<std::size_t>(n, std::max<std::size_t>(16, 20'000'000 / mesh_->triangles.size()));
-        RayAnswers listed(few);
-        const auto trace_list = [&] { listed.trace(*list_.accelerator, set.rays, set.any_hit(), 0, few); };
+        const std::vector<Ray> some = every_nth(set.rays, stride(n));
+        RayAnswers listed(some.size());
+        const auto trace_list = [&] { listed.trace(*list_.accelerator, some, set.any_hit(), 0, some.size()); };
         trace_list();
-        if (options_.list) contestants.push_back({"list", [] {}, trace_list, few});
+        if (options_.list) contestants.push_back({"list", [] {}, trace_list, some.size()});
         std::vector<EmbreeQuery> queries;
         if (embree_) {
             for (const EmbreeMode mode : {EmbreeMode::single, EmbreeMode::packet16, EmbreeMode::stream})
@@ -141,11 +151,11 @@ private:
             queries[0].reset();
             embree_->trace(queries[0], 0, n);
         }
-        return report(set, contestants, answers, listed, few, queries, table);
+        return report(set, contestants, answers, listed, queries, table);
     }
 
     Result<void> report(const RaySet& set, const std::vector<Contestant>& contestants,
-                        const std::vector<RayAnswers>& answers, const RayAnswers& listed, std::size_t few,
+                        const std::vector<RayAnswers>& answers, const RayAnswers& listed,
                         const std::vector<EmbreeQuery>& queries, TextTable& table) {
         const auto single = std::ranges::find(contestants, "Embree single robust", &Contestant::name);
         std::vector<std::string> wrong;
@@ -157,15 +167,15 @@ private:
                                  {"interval", {speed.interval.low, speed.interval.high}}};
             std::vector<std::string> row{std::string(set.name),
                                          contestants[k].name,
-                                         fmt::format("{:.2f}", speed.value),
-                                         fmt::format("{:.2f} - {:.2f}", speed.interval.low, speed.interval.high),
+                                         short_number(speed.value),
+                                         interval_text(speed.interval),
                                          "",
                                          "",
                                          ""};
             if (single != contestants.end()) {
                 const Measured times = speed_ratio(contestants[k], *single);
-                row[4] = fmt::format("{:.2f}", times.value);
-                row[5] = fmt::format("{:.2f} - {:.2f}", times.interval.low, times.interval.high);
+                row[4] = short_number(times.value);
+                row[5] = interval_text(times.interval);
                 entry["to_embree_single_robust"] = times.value;
                 entry["ratio_interval"] = {times.interval.low, times.interval.high};
             }
@@ -178,9 +188,10 @@ private:
                         wrong.push_back(
                             fmt::format("{} and Embree on {:.0f} rays in a million", contestants[k].name, ppm));
                 }
-                for (std::size_t i = 0; i < few; ++i) {
-                    if (!listed.same(answers[k], i, set.any_hit()))
-                        wrong.push_back(fmt::format("{} and the list on ray {}", contestants[k].name, i));
+                const std::size_t every = stride(set.rays.size());
+                for (std::size_t i = 0; i < listed.hits.size(); ++i) {
+                    if (!listed.same(i, answers[k], i * every, set.any_hit()))
+                        wrong.push_back(fmt::format("{} and the list on ray {}", contestants[k].name, i * every));
                 }
             }
             table.add(std::move(row));

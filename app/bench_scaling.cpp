@@ -110,9 +110,9 @@ private:
         nlohmann::json figures = nlohmann::json::array();
         for (const ScalingFigure& figure : scaling_figures(runs_)) {
             const auto& [value, interval] = figure.speed_up;
-            table.add({figure.what, figure.who, fmt::format("{}", figure.threads),
-                       fmt::format("{:.4f}", figure.seconds), fmt::format("{:.2f}", figure.speed * 1e-6),
-                       fmt::format("{:.2f}", value), fmt::format("{:.2f} - {:.2f}", interval.low, interval.high)});
+            table.add({figure.what, figure.who, fmt::format("{}", figure.threads), short_number(figure.seconds),
+                       fmt::format("{:.2f}", figure.speed * 1e-6), fmt::format("{:.2f}", value),
+                       interval_text(interval)});
             figures.push_back({{"what", figure.what},
                                {"who", figure.who},
                                {"threads", figure.threads},

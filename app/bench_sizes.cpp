@@ -24,8 +24,8 @@ void add_row(TextTable& table, nlohmann::json& figures, const RaySet& set, std::
     }
     if (contestants.size() > 1) {
         const Measured ratio = speed_ratio(contestants[0], contestants[1]);
-        row.push_back(fmt::format("{:.2f}", ratio.value));
-        row.push_back(fmt::format("{:.2f} - {:.2f}", ratio.interval.low, ratio.interval.high));
+        row.push_back(short_number(ratio.value));
+        row.push_back(interval_text(ratio.interval));
         entry["to_embree_single_robust"] = ratio.value;
         entry["ratio_interval"] = {ratio.interval.low, ratio.interval.high};
     }

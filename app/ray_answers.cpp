@@ -17,9 +17,9 @@ void RayAnswers::trace(const Accelerator& structure, std::span<const Ray> rays, 
     }
 }
 
-bool RayAnswers::same(const RayAnswers& other, std::size_t i, bool any_hit) const {
-    if (any_hit) return blocked[i] == other.blocked[i];
-    return hits[i].t == other.hits[i].t && hits[i].primitive == other.hits[i].primitive;
+bool RayAnswers::same(std::size_t i, const RayAnswers& others, std::size_t k, bool any_hit) const {
+    if (any_hit) return blocked[i] == others.blocked[k];
+    return hits[i].t == others.hits[k].t && hits[i].primitive == others.hits[k].primitive;
 }
 
 double disagreement(const RayAnswers& ours, const EmbreeQuery& theirs, bool any_hit) {

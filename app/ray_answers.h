@@ -20,8 +20,8 @@ struct RayAnswers {
     std::uint32_t primitive(std::size_t i, bool any_hit) const {
         return any_hit ? (blocked[i] ? 0 : kNone) : hits[i].primitive;
     }
-    /// Whether both found the same on ray i, to the last bit.
-    bool same(const RayAnswers& other, std::size_t i, bool any_hit) const;
+    /// Whether ray i found what ray k of the others found, to the last bit.
+    bool same(std::size_t i, const RayAnswers& others, std::size_t k, bool any_hit) const;
 };
 
 /// Rays in a million on which they name different triangles. At a shared edge both are right: there t decides.

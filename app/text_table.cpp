@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rayuela {
 
@@ -24,6 +25,15 @@ std::string TextTable::text() const {
         if (r == 0) text += std::string(line.size(), '-') + '\n';
     }
     return text;
+}
+
+std::string short_number(double value) {
+    constexpr double kSmall = 0.1;
+    return std::fabs(value) < kSmall ? fmt::format("{:.2g}", value) : fmt::format("{:.2f}", value);
+}
+
+std::string interval_text(const Interval& interval) {
+    return short_number(interval.low) + " - " + short_number(interval.high);
 }
 
 }  // namespace rayuela

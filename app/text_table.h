@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/math/statistics.h"
+
 #include <string>
 #include <vector>
 
@@ -19,5 +21,10 @@ private:
     std::size_t name_columns_;
     std::vector<std::vector<std::string>> rows_;
 };
+
+/// With two digits after the point, or two that say something where that is more.
+std::string short_number(double value);
+/// "low - high".
+std::string interval_text(const Interval& interval);
 
 }  // namespace rayuela

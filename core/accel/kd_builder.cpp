@@ -42,10 +42,6 @@ struct UnsetAllocator : std::allocator<KdReference> {
 };
 using References = std::vector<KdReference, UnsetAllocator>;
 
-bool is_usable(const Bounds3& b) {
-    return !b.empty() && is_finite(b.lo) && is_finite(b.hi);
-}
-
 /// One inner node over two subtrees.
 Subtree join(int axis, float plane, Subtree&& below, Subtree&& above) {
     Subtree tree = {{KdNode::inner(axis, plane, 1), KdNode(), KdNode()}, std::move(below.references)};
@@ -180,6 +176,10 @@ private:
 
 }  // namespace
 
+bool fits_a_tree(const Bounds3& bounds) {
+    return !bounds.empty() && is_finite(bounds.lo) && is_finite(bounds.hi);
+}
+
 std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& control) {
     constexpr std::uint64_t kDuplicates = 8, kAlwaysAllowed = 1'000'000;
     NodeTask root;
@@ -187,7 +187,7 @@ std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& con
     references.reserve(input.bounds.size());
     for (std::uint32_t i = 0; i < input.bounds.size(); ++i) {
         const Bounds3& box = input.bounds[i];
-        if (!is_usable(box)) continue;
+        if (!fits_a_tree(box)) continue;
         references.push_back({box, i, 1});
         root.cell.extend(box);
     }

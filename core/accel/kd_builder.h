@@ -7,8 +7,11 @@
 
 namespace rayuela {
 
+/// Whether a tree can hold what has these bounds: not empty and finite.
+bool fits_a_tree(const Bounds3& bounds);
+
 struct KdBuildInput {
-    std::span<const Bounds3> bounds;  ///< Of each primitive; those that are empty or not finite are left out.
+    std::span<const Bounds3> bounds;  ///< Of each primitive; those that do not fit a tree are left out.
     /// When set, the primitives are its triangles, and cut ones are bounded by what is left of them.
     const TriangleMesh* mesh = nullptr;
     KdSplit split = KdSplit::sah;

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "core/accel/few_objects-inl.h"
+#include "core/accel/mesh_sweep-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -28,6 +29,10 @@ struct Workspace {
 template <Query kQuery>
 void trace_mesh(const KdScene& scene, std::uint32_t object, std::span<const std::uint32_t> ids,
                 std::span<const Ray> rays, std::span<Hit> hits, RayBlock& block) {
+    if (scene.in_turn) {
+        sweep_mesh<kQuery>(scene, object, ids, rays, hits, block);
+        return;
+    }
     const MeshTree& mesh = *scene.mesh_trees[object];
     RayBlockWriter(rays, hits, &scene.objects[object], mesh.tree.bounds).write(ids, block);
     MeshClient<kQuery> client(mesh, object, block, rays, hits);

@@ -8,7 +8,7 @@
 
 namespace rayuela {
 
-/// What the kernels read of a KdAccelerator.
+/// What the kernels read of a KdAccelerator or a ListAccelerator.
 struct KdScene {
     std::span<const TracedObject> objects;
     std::span<const MeshTree* const> mesh_trees;  ///< One an object; null for all but meshes.
@@ -17,6 +17,7 @@ struct KdScene {
     const ObjectLeaves* leaves = nullptr;
     std::span<const Bounds3> bounds;  ///< One an object, where any stands apart.
     Bounds3 all_bounds;               ///< Of all objects but planes.
+    bool in_turn = false;             ///< Each mesh is one leaf, to be tested in turn: no trees.
 };
 
 /// Accelerator::intersect and Accelerator::occluded by the widest instructions of this machine.

@@ -1,67 +1,42 @@
 #include "core/accel/list.h"
 
-#include <algorithm>
-#include <set>
-
 namespace rayuela {
-namespace {
 
-enum class Query { closest, any };
-
-void intersect_mesh(const TracedObject& object, std::uint32_t index, const TracedRay& world, const Ray& ray,
-                    Query query, Hit& best) {
-    const TriangleMesh& mesh = *object.mesh();
-    const TriangleRay local = object.in_world ? world.triangle_ray : TriangleRay(object.to_local.ray(world.ray));
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const glm::uvec3& t = mesh.triangles[i];
-        const TRange range{ray.t_min, std::min(ray.t_max, best.t)};
-        ShapeHit hit;
-        if (!intersect_triangle(local, mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z], range, hit))
-            continue;
-        keep_closer(hit, index, i, best);
-        if (query == Query::any) return;
-    }
-}
-
-Hit trace(std::span<const TracedObject> objects, const Ray& ray, Query query) {
-    Hit best;
-    if (!can_hit(ray)) return best;
-    const TracedRay world{RayD(ray)};
-    for (std::uint32_t i = 0; i < objects.size(); ++i) {
-        ShapeHit hit;
-        const TRange range{ray.t_min, std::min(ray.t_max, best.t)};
-        if (objects[i].mesh()) {
-            intersect_mesh(objects[i], i, world, ray, query, best);
-        } else if (intersect_shape(objects[i], world, range, hit)) {
-            keep_closer(hit, i, hit.primitive, best);
-        }
-        if (query == Query::any && best.valid()) break;
-    }
-    return best;
-}
-
-}  // namespace
-
-ListAccelerator::ListAccelerator(std::vector<GeometryInstance> instances, const AccelSettings& settings)
+ListAccelerator::ListAccelerator(std::vector<GeometryInstance> instances, const AccelSettings& settings,
+                                 const ListAccelerator* previous)
     : instances_(std::move(instances)), settings_(settings) {
-    std::set<const TriangleMesh*> counted;
+    std::vector<std::uint32_t> in_turn;
     objects_.reserve(instances_.size());
-    for (const GeometryInstance& instance : instances_) {
-        const TracedObject& object = objects_.emplace_back(instance);
-        const TriangleMesh* mesh = object.mesh();
-        bounds_.extend(world_bounds(object, instance, mesh ? bounds_of_triangles(*mesh) : Bounds3()));
+    for (std::uint32_t i = 0; i < instances_.size(); ++i) {
+        const TracedObject& object = objects_.emplace_back(instances_[i]);
+        const MeshTree* mesh = triangles_of(object, previous);
+        mesh_of_object_.push_back(mesh);
+        bounds_.push_back(world_bounds(object, instances_[i], mesh ? mesh->tree.bounds : Bounds3()));
         if (!mesh) ++stats_.primitives;
-        if (mesh && counted.insert(mesh).second) stats_.primitives += mesh->triangles.size();
+        if (object.is_plane()) planes_.push_back(i);
+        if (!fits_a_tree(bounds_.back())) continue;
+        all_bounds_.extend(bounds_.back());
+        in_turn.push_back(i);
     }
-    stats_.memory_bytes = objects_.size() * sizeof(TracedObject);
+    leaves_ = make_object_leaves(objects_, nullptr, in_turn);
+    for (const auto& [mesh, triangles] : meshes_) {
+        stats_.primitives += triangles->stats.primitives;
+        stats_.memory_bytes += triangles->stats.memory_bytes;
+    }
+    stats_.memory_bytes += objects_.size() * sizeof(TracedObject) + leaves_.memory_bytes();
 }
 
-void ListAccelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = trace(objects_, rays[i], Query::closest);
-}
-
-void ListAccelerator::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = trace(objects_, rays[i], Query::any).valid() ? 1 : 0;
+/// Null for other shapes.
+const MeshTree* ListAccelerator::triangles_of(const TracedObject& object, const ListAccelerator* previous) {
+    if (!object.mesh()) return nullptr;
+    std::shared_ptr<const MeshTree>& triangles = meshes_[object.mesh()];
+    if (triangles) return triangles.get();
+    if (previous) {
+        const auto known = previous->meshes_.find(object.mesh());
+        if (known != previous->meshes_.end() && !known->second->mesh.expired()) triangles = known->second;
+    }
+    if (!triangles) triangles = make_mesh_leaf(std::get<std::shared_ptr<const TriangleMesh>>(object.shape));
+    return triangles.get();
 }
 
 }  // namespace rayuela

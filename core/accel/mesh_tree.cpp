@@ -44,7 +44,34 @@ std::vector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, 
     return data;
 }
 
+/// Null when cancelled.
+std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>& mesh, KdTree tree,
+                                       const BuildControl& control) {
+    auto result = std::make_shared<MeshTree>();
+    result->tree = std::move(tree);
+    result->leaf_data = make_leaf_data(*mesh, result->tree, control);
+    if (control.cancelled) return nullptr;
+    result->stats = result->tree.stats();
+    result->stats.primitives = mesh->triangles.size();
+    result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
+    result->mesh = mesh;
+    return result;
+}
+
 }  // namespace
+
+std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const TriangleMesh>& mesh) {
+    const BuildControl control;
+    const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
+    KdTree tree;
+    for (std::uint32_t i = 0; i < bounds.size(); ++i) {
+        if (!fits_a_tree(bounds[i])) continue;
+        tree.references.push_back(i);
+        tree.bounds.extend(bounds[i]);
+    }
+    tree.nodes = {KdNode::leaf(0, static_cast<std::uint32_t>(tree.references.size()))};
+    return finish(mesh, std::move(tree), control);
+}
 
 std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
                                                 const AccelSettings& settings, BuildControl& control) {
@@ -54,15 +81,7 @@ std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const Tria
         {.bounds = bounds, .mesh = mesh.get(), .split = settings.split, .leaf_size = settings.leaf_size}, control);
     if (!tree) return nullptr;
 
-    auto result = std::make_shared<MeshTree>();
-    result->tree = std::move(*tree);
-    result->leaf_data = make_leaf_data(*mesh, result->tree, control);
-    if (control.cancelled) return nullptr;
-    result->stats = result->tree.stats();
-    result->stats.primitives = mesh->triangles.size();
-    result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
-    result->mesh = mesh;
-    return result;
+    return finish(mesh, std::move(*tree), control);
 }
 
 }  // namespace rayuela

@@ -16,6 +16,9 @@ struct MeshTree {
     AccelStats stats;
 };
 
+/// All triangles in one leaf, for those who test them in turn.
+std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const TriangleMesh>& mesh);
+
 /// Null when cancelled.
 std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
                                                 const AccelSettings& settings, BuildControl& control);

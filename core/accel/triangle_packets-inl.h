@@ -40,6 +40,12 @@ public:
     /// [t_min, t_max].
     template <typename Accept>
     HWY_INLINE void test(const float* runs, std::size_t n, FloatMask here, const Accept& accept) const {
+        test(runs, n, 0, n, here, accept);
+    }
+    /// The same with triangles [begin, end) of the n.
+    template <typename Accept>
+    HWY_INLINE void test(const float* runs, std::size_t n, std::size_t begin, std::size_t end, FloatMask here,
+                         const Accept& accept) const {
         const FloatTag d;
         const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
         const auto of_block = [&](const float* values) HWY_ATTR { return hn::LoadU(d, values + first_); };
@@ -52,7 +58,7 @@ public:
                               load(z_begin_),
                               load(z_end_)};
         const TurnedRuns turned(runs, n, turn_);
-        for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             const FloatMask may = may_hit(rays, turned.triangle(i));
             const LaneBits candidates = bits_of(d, hn::And(may, here));
             if (candidates != 0) decide(turned.run, i, candidates, accept);

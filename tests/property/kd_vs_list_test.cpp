@@ -1,6 +1,7 @@
 #include "core/accel/kd_accelerator.h"
 #include "core/math/isa.h"
 #include "tests/support/hits.h"
+#include "tests/support/scalar_list.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,9 @@ std::vector<Ray> bundles(const std::vector<Ray>& around, std::uint64_t seed) {
 
 void expect_same_as_list(const std::vector<GeometryInstance>& instances, const std::vector<Ray>& rays,
                          const std::vector<int>& leaf_sizes) {
-    const Answers expected = trace(*build(instances, {.kind = AcceleratorKind::list}), rays);
+    const Answers expected = trace(*scalar_list(instances), rays);
+    EXPECT_TRUE(same_answers(expected, trace(*build(instances, {.kind = AcceleratorKind::list}), rays), rays))
+        << "list";
     for (const KdSplit split : {KdSplit::median, KdSplit::sah}) {
         for (const int leaf_size : leaf_sizes) {
             const auto kd = build(instances, {.kind = AcceleratorKind::kd, .leaf_size = leaf_size, .split = split});
@@ -133,7 +136,7 @@ TEST(KdVersusList, LatticeRaysThroughLatticeGeometry) {
 TEST(KdVersusList, IntervalEndsAreInclusive) {
     const auto instances = make_scene(11, 20, 100);
     std::vector<Ray> rays = make_rays(instances, 3000, 12);
-    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const auto list = scalar_list(instances);
     const Answers first = trace(*list, rays);
     std::vector<Ray> limited;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -219,7 +222,7 @@ TEST(KdVersusList, StrangeRaysMissOrAgree) {
             rays.push_back(ray);
         }
     }
-    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const auto list = scalar_list(instances);
     const Answers expected = trace(*list, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Ray& r = rays[i];

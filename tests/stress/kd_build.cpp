@@ -2,6 +2,7 @@
 #include "tests/stress/stress.h"
 #include "tests/support/hits.h"
 #include "tests/support/oracle.h"
+#include "tests/support/scalar_list.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ using namespace rayuela::test;
 /// Both splits and a few leaf sizes against the list, with rays at the primitives.
 void expect_right_hits(const std::vector<GeometryInstance>& scene, const std::vector<int>& leaf_sizes, Random& random,
                        int rays, Outcome& outcome) {
-    const auto list = build(scene, {.kind = AcceleratorKind::list});
+    const auto list = scalar_list(scene);
     std::vector<Ray> batch;
     while (batch.size() < static_cast<std::size_t>(rays)) batch.push_back(make_ray(scene, random));
     const Answers expected = trace(*list, batch);
@@ -98,7 +99,7 @@ Outcome degenerate_scenes(double scale) {
             if (count > 0) scene.push_back({make_mesh(positions, triangles), {}});
             if (random.integer(0, 1)) scene.push_back({Box{Vec3(0), extent}, {}});
             outcome.cases -= 1;
-            const auto list = build(scene, {.kind = AcceleratorKind::list});
+            const auto list = scalar_list(scene);
             std::vector<Ray> rays;
             for (int i = 0; i < 200; ++i) {
                 Ray ray{.origin = 3 * size * random.in_cube()};

@@ -4,6 +4,7 @@
 #include "tests/stress/stress.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/oracle.h"
+#include "tests/support/scalar_list.h"
 
 #include <fmt/format.h>
 
@@ -80,7 +81,7 @@ Outcome reintersect(double scale) {
     return for_batches(
         scaled(1e8, scale), 27, kRaysPerShape, [](Random& random, std::uint64_t, std::uint64_t n, Outcome& outcome) {
             const GeometryInstance instance = random_instance(random);
-            const auto list = build({instance}, {.kind = AcceleratorKind::list});
+            const auto list = scalar_list({instance});
             for (std::uint64_t i = 0; i < n; ++i) {
                 const Vec3 target = somewhere_on(instance, random);
                 const float reach = glm::length(instance.to_world.linear[0]) * log_uniform(random, 1e-2f, 1e3f);
@@ -136,7 +137,7 @@ Outcome second_shell(double scale) {
                 break;
         }
         ray.direction = Vec3(random.uniform(-0.05f, 0.05f), -1, random.uniform(-0.05f, 0.05f));
-        const auto list = build(shells, {.kind = AcceleratorKind::list});
+        const auto list = scalar_list(shells);
         const auto where = [&] {
             return fmt::format("shape {} at {} size {:g} {}", shells[0].shape.index(), describe(at), size,
                                describe(ray));
@@ -179,7 +180,7 @@ Outcome shadow_rays(double scale) {
                                                           {Plane{at, Vec3(0, 1, 0)}, {}}};
             const Material* const materials[] = {&lamp, &ground};
             const LightTable lights(instances, materials, NoEnvironment{});
-            const auto list = build(instances, {.kind = AcceleratorKind::list});
+            const auto list = scalar_list(instances);
             for (std::uint64_t i = 0; i < n; ++i) {
                 Ray down{.origin = at + distance * Vec3(random.uniform(-2, 2), 0.4f, random.uniform(-2, 2)),
                          .direction = Vec3(0, -1, 0)};

@@ -1,6 +1,7 @@
 #include "tests/stress/stress.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/hits.h"
+#include "tests/support/scalar_list.h"
 
 #include <fmt/format.h>
 
@@ -243,7 +244,7 @@ Outcome deepest_tree(double scale) {
         triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     const std::vector<GeometryInstance> scene{{make_mesh(std::move(positions), std::move(triangles)), {}}};
-    const auto list = build(scene, {.kind = AcceleratorKind::list}), kd = build(scene, {.leaf_size = 1});
+    const auto list = scalar_list(scene), kd = build(scene, {.leaf_size = 1});
     Outcome total = for_batches(
         scaled(1e6, scale), 28, 1024, [&](Random& random, std::uint64_t, std::uint64_t n, Outcome& outcome) {
             std::vector<Ray> rays;

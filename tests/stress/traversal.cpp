@@ -3,6 +3,7 @@
 #include "tests/stress/stress.h"
 #include "tests/support/hits.h"
 #include "tests/support/oracle.h"
+#include "tests/support/scalar_list.h"
 
 #include <fmt/format.h>
 
@@ -37,7 +38,7 @@ void expect_identical(const Accelerator& kd, const Rays& rays, const Answers& ex
 /// Every leaf size and both splits on batches of rays made by make(random); `count` rays in all.
 template <typename Make>
 Outcome against_list(const Scene& scene, std::uint64_t count, std::uint64_t seed, const Make& make) {
-    const auto list = build(scene, {.kind = AcceleratorKind::list});
+    const auto list = scalar_list(scene);
     std::vector<std::shared_ptr<const Accelerator>> trees;
     for (const KdSplit split : {KdSplit::median, KdSplit::sah}) {
         for (const int leaf_size : kLeafSizes) trees.push_back(build(scene, {.leaf_size = leaf_size, .split = split}));
@@ -200,7 +201,7 @@ Outcome strange_rays(double scale) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr std::array kValues{kNan, kInfinity, -kInfinity, 0.0f, -0.0f, 1e-45f, -1e-40f, 1e-38f, 1e30f, -3e38f};
     const Scene scene = make_scene(31, 12, 400);
-    const auto kd = build(scene, {}), list = build(scene, {.kind = AcceleratorKind::list});
+    const auto kd = build(scene, {}), list = scalar_list(scene);
     const auto strange = [&](Random& random) {
         Ray ray = make_ray(scene, random);
         for (int change = random.integer(1, 4); change > 0; --change) {

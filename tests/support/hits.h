@@ -10,7 +10,8 @@ inline bool identical(const Hit& a, const Hit& b) {
     return std::bit_cast<std::uint32_t>(a.t) == std::bit_cast<std::uint32_t>(b.t) &&
            std::bit_cast<std::uint32_t>(a.u) == std::bit_cast<std::uint32_t>(b.u) &&
            std::bit_cast<std::uint32_t>(a.v) == std::bit_cast<std::uint32_t>(b.v) && a.object == b.object &&
-           a.primitive == b.primitive;
+           a.primitive == b.primitive &&
+           std::bit_cast<std::uint32_t>(a.t_rest) == std::bit_cast<std::uint32_t>(b.t_rest);
 }
 
 struct Answers {

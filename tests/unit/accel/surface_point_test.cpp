@@ -4,6 +4,7 @@
 #include "core/math/float_error.h"
 #include "core/math/isa.h"
 #include "tests/support/accel_scenes.h"
+#include "tests/support/scalar_list.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@ namespace rayuela::test {
 namespace {
 
 SurfacePoint surface(const std::vector<GeometryInstance>& instances, const Ray& ray) {
-    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const auto list = scalar_list(instances);
     const Hit hit = intersect(*list, ray);
     EXPECT_TRUE(hit.valid());
     return surface_point(instances, ray, hit);
@@ -137,7 +138,7 @@ TEST(SurfacePoint, LeavingRaysDoNotMeetTheirOwnSurface) {
         Ray ray{.origin = instances[0].to_world.point(random.in_cube(6))};
         ray.direction =
             special_point(instances, random) - ray.origin + 1e-3f * (special_point(instances, random) - ray.origin);
-        const auto list = build(instances, {.kind = AcceleratorKind::list});
+        const auto list = scalar_list(instances);
         const Hit hit = intersect(*list, ray);
         if (!hit.valid()) continue;
         ++tested;
@@ -176,7 +177,7 @@ TEST(SurfacePoint, LeavingRaysFindASurfaceCloseBehind) {
             return Quad{Vec3(at.x - size, y, at.z + size), Vec3(2 * size, 0, 0), Vec3(0, 0, -2 * size)};
         };
         const std::vector<GeometryInstance> instances{{quad_at(at.y), {}}, {quad_at(at.y - gap), {}}};
-        const auto list = build(instances, {.kind = AcceleratorKind::list});
+        const auto list = scalar_list(instances);
         const Ray ray{.origin = at + Vec3(0, size, 0),
                       .direction = Vec3(random.uniform(-0.3f, 0.3f), -1, random.uniform(-0.3f, 0.3f))};
         const Hit first = intersect(*list, ray);
@@ -194,7 +195,7 @@ TEST(SurfacePoint, ManyAtOnceAreTheSameAsEachAlone) {
     for (int i = 0; i < 40; ++i)
         instances.push_back({Sphere{random.in_cube(4), std::ldexp(1.0f, random.integer(-12, 2))}, {}});
     instances.push_back({Sphere{Vec3(0, -1e4f, 0), 1e4f - 3}, {}});
-    const auto list = build(instances, {.kind = AcceleratorKind::list});
+    const auto list = scalar_list(instances);
     std::vector<Ray> rays;
     for (int i = 0; i < 5000; ++i) rays.push_back(make_ray(instances, random));
     std::vector<Hit> hits(rays.size());

@@ -65,6 +65,14 @@ TEST(TextTable, ColumnsAreAsWideAsTheyNeed) {
     EXPECT_EQ(table.text(), "who     s\n---------\nkd   10.5\n");
 }
 
+TEST(TextTable, NumbersKeepTwoDigits) {
+    EXPECT_EQ(short_number(12.345), "12.35");
+    EXPECT_EQ(short_number(0.1), "0.10");
+    EXPECT_EQ(short_number(0.00123), "0.0012");
+    EXPECT_EQ(short_number(0), "0");
+    EXPECT_EQ(interval_text({0.02, 3}), "0.02 - 3.00");
+}
+
 TEST(BenchLand, HasAboutSoManyTriangles) {
     for (const std::size_t count : {1u, 1'000u, 20'000u}) {
         const auto mesh = bench_land("land", count).make();
