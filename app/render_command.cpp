@@ -1,6 +1,7 @@
 #include "app/progress_bar.h"
 #include "app/subcommands.h"
 #include "core/io/image_io.h"
+#include "core/render/render_scene.h"
 #include "core/render/render_session.h"
 
 #include <fmt/format.h>
@@ -105,6 +106,8 @@ Result<void> run_render(const RenderOptions& options) {
             return interrupted != 0;
         });
     }
+    if (frame && !frame->render_scene->problems().empty())
+        fmt::print(stderr, "{}\n", to_string(frame->render_scene->problems()));
     if (!frame || frame->statistics.spp == 0)
         return fail("", "", "interrupted before the first sample: nothing is saved");
     if (auto written = write_image(options.output, frame->image); !written) return written;

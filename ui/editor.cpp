@@ -104,7 +104,9 @@ void Editor::begin_frame(std::uint64_t gesture) {
         if (!ready->superseded) finish(*ready);
     }
 
-    frame_ = session_.frame();
+    const std::shared_ptr<const Frame> shown = std::exchange(frame_, session_.frame());
+    if (frame_ && (!shown || shown->render_scene->problems() != frame_->render_scene->problems()))
+        log.add(LogLevel::warning, frame_->render_scene->problems());
     if (frame_) convergence_.add(frame_->statistics);
     health.update(frame_, view.map);
     if (std::chrono::steady_clock::now() - autosave_time_ >= kAutosaveInterval) autosave();
@@ -285,7 +287,7 @@ void Editor::load_texture(MaterialId id, const std::string& key, const fs::path&
 
 void Editor::load_environment(const fs::path& file) {
     load("Environment " + file.filename().string(), {}, [file, cache = cache_]() -> Result<Loaded> {
-        auto image = cache->image(file, ColorDecoding::linear);
+        auto image = cache->panorama(file, ColorDecoding::linear);
         if (!image) return tl::unexpected(image.error());
         return Loaded{[file, read = *image](const Scene& scene) {
                           const auto* present = std::get_if<ImageEnvironment>(&scene.environment);

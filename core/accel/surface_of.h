@@ -226,11 +226,13 @@ template <>
 struct SurfaceOf<std::shared_ptr<const TriangleMesh>> {
     Placement placement;
     std::shared_ptr<const TriangleMesh> mesh;
+    std::shared_ptr<const std::vector<Vec2>> uvs;  ///< Null where it has none or nobody asks for them.
     double sign, offset;
 
-    SurfaceOf(std::shared_ptr<const TriangleMesh> own, const Affine& to_world)
+    SurfaceOf(std::shared_ptr<const TriangleMesh> own, const Affine& to_world, bool with_uv)
         : placement(to_world, to_world.is_identity()),
           mesh(std::move(own)),
+          uvs(with_uv ? uvs_of(mesh) : nullptr),
           sign(front_sign(to_world)),
           offset(max_abs(Vec3d(to_world.translation))) {}
 
@@ -250,10 +252,10 @@ struct SurfaceOf<std::shared_ptr<const TriangleMesh>> {
         return length > 0 && std::isfinite(length) ? Vec3(n / length) : Vec3(0);
     }
     Vec2 uv(const Hit& hit) const {
-        if (mesh->uvs.empty()) return {hit.u, hit.v};
+        if (!uvs) return {hit.u, hit.v};
         const glm::uvec3& t = mesh->triangles[hit.primitive];
         const auto b0 = static_cast<float>(1 - double{hit.u} - double{hit.v});
-        return b0 * mesh->uvs[t.x] + hit.u * mesh->uvs[t.y] + hit.v * mesh->uvs[t.z];
+        return b0 * (*uvs)[t.x] + hit.u * (*uvs)[t.y] + hit.v * (*uvs)[t.z];
     }
 };
 

@@ -60,7 +60,8 @@ struct Surfaces::Tables {
     }
 };
 
-Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::make_unique<Tables>()) {
+Surfaces::Surfaces(std::span<const GeometryInstance> instances, std::span<const std::uint8_t> with_uv)
+    : tables_(std::make_unique<Tables>()) {
     entries_.reserve(instances.size());
     for (const GeometryInstance& instance : instances) {
         std::visit(
@@ -68,15 +69,18 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances) : tables_(std::m
                 auto& table = std::get<std::vector<SurfaceOf<Shape>>>(tables_->kinds);
                 entries_.push_back({.kind = static_cast<std::uint32_t>(instance.shape.index()),
                                     .index = static_cast<std::uint32_t>(table.size())});
-                table.emplace_back(shape, instance.to_world);
+                if constexpr (std::is_same_v<Shape, std::shared_ptr<const TriangleMesh>>) {
+                    table.emplace_back(shape, instance.to_world, with_uv.empty() || with_uv[entries_.size() - 1] != 0);
+                    entries_.back().interpolates = !shape->normals.empty();
+                } else {
+                    table.emplace_back(shape, instance.to_world);
+                }
                 entries_.back().flat = kFlat<SurfaceOf<Shape>>;
                 has_meshes_ |= instance.shape.index() == kMeshKind;
                 if constexpr (std::is_same_v<Shape, Sphere>) {
                     tables_->spheres.push_back(table.back().sphere);
                     entries_.back().sphere = table.back().placement.in_world();
                 }
-                if constexpr (std::is_same_v<Shape, std::shared_ptr<const TriangleMesh>>)
-                    entries_.back().interpolates = !shape->normals.empty();
             },
             instance.shape);
     }

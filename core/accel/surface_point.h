@@ -27,7 +27,9 @@ struct SurfacePoint {
 /// along two tangents of unit length, in the plane's own space.
 class Surfaces {
 public:
-    explicit Surfaces(std::span<const GeometryInstance> instances);
+    /// with_uv: one an instance, 0 where nobody will ask for uv; or none. A mesh then keeps its texture coordinates out of
+    /// memory, and barycentrics stand for them.
+    explicit Surfaces(std::span<const GeometryInstance> instances, std::span<const std::uint8_t> with_uv = {});
     ~Surfaces();
     Surfaces(const Surfaces&) = delete;
     Surfaces& operator=(const Surfaces&) = delete;

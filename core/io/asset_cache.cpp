@@ -86,10 +86,18 @@ Result<std::shared_ptr<const Image>> AssetCache::image(const fs::path& path, Col
     return fetch<Image>(images_, embedded ? embedded->first : path, key, warnings,
                         [&](Problems& told) -> Result<std::shared_ptr<const Image>> {
                             auto image = embedded ? read_gltf_image(embedded->first, embedded->second, decoding)
-                                                  : read_image(path, decoding);
+                                                  : open_image(path, decoding);
                             if (!image) return image;
                             return repaired(*image, told);
                         });
+}
+
+Result<std::shared_ptr<const Image>> AssetCache::panorama(const fs::path& path, ColorDecoding decoding,
+                                                          Problems* warnings) {
+    const auto opened = image(path, decoding, warnings);
+    if (!opened) return opened;
+    if (auto seen = with_pixels(*opened)) return seen;
+    return fail(path.string(), "", "cannot be decoded");
 }
 
 Result<std::shared_ptr<const GltfFile>> AssetCache::gltf(const fs::path& path) {

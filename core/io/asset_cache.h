@@ -16,9 +16,12 @@ namespace rayuela {
 class AssetCache {
 public:
     MeshResult mesh(const std::filesystem::path& path, Problems* warnings = nullptr);
-    /// "folder/helmet.glb#2" names image 2 of a glTF file.
+    /// "folder/helmet.glb#2" names image 2 of a glTF file. May have no pixels yet: see `open_image`.
     Result<std::shared_ptr<const Image>> image(const std::filesystem::path& path, ColorDecoding decoding,
                                                Problems* warnings = nullptr);
+    /// The same for what is seen at once: it has its pixels.
+    Result<std::shared_ptr<const Image>> panorama(const std::filesystem::path& path, ColorDecoding decoding,
+                                                  Problems* warnings = nullptr);
     Result<std::shared_ptr<const GltfFile>> gltf(const std::filesystem::path& path);
     /// Forgets what nobody else holds any more.
     void release_unused();

@@ -177,9 +177,9 @@ Expected<std::shared_ptr<const Image>> read_image(const Context& context, int in
     const std::string source =
         is_file ? (context.path.parent_path() / percent_decoded(image.uri)).lexically_normal().string()
                 : fmt::format("{}#{}", context.path.string(), index);
-    auto decoded = decode_image(std::as_bytes(bytes), source, decoding);
-    if (!decoded) return tl::unexpected(decoded.error().front().cause);
-    return *decoded;
+    auto image_read = open_image(std::as_bytes(bytes), source, decoding);
+    if (!image_read) return tl::unexpected(image_read.error().front().cause);
+    return *image_read;
 }
 
 std::vector<NamedMaterial> read_materials(Context& context) {

@@ -11,6 +11,10 @@ namespace rayuela::image_formats {
 using Decoded = tl::expected<Image, std::string>;
 
 Decoded decode_stb(std::string_view bytes, ColorDecoding decoding);  ///< PNG, JPEG.
+/// What a PNG or JPEG says of itself, without the pixels.
+Decoded header_stb(std::string_view bytes);
+/// Whether the bytes are a PNG with all its chunks and their checksums, or a JPEG that begins and ends as one.
+bool is_whole(std::string_view bytes);
 Decoded decode_hdr(std::string_view bytes);
 Decoded decode_exr(const std::string& bytes);
 Decoded decode_pfm(std::string_view bytes);

@@ -43,6 +43,22 @@ Result<std::shared_ptr<const Image>> finish(Decoded decoded, std::string name) {
     return std::make_shared<const Image>(std::move(*decoded));
 }
 
+Result<std::shared_ptr<const Image>> open_bytes(std::string bytes, std::string name, ColorDecoding decoding) {
+    if (!is_whole(bytes)) return finish(decode(bytes, decoding), std::move(name));
+    Decoded image = header_stb(bytes);
+    if (!image) return finish(std::move(image), std::move(name));
+    const std::uint64_t size = bytes.size();
+    auto make = [bytes = std::move(bytes), name, decoding] {
+        return finish(decode(bytes, decoding), name).value_or(nullptr);
+    };
+    image->encoded = std::make_shared<const Lazy<Image>>(std::move(make), size);
+    return finish(std::move(image), std::move(name));
+}
+
+std::string copied(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const Image>> read_image(const fs::path& path, ColorDecoding decoding) {
@@ -53,8 +69,18 @@ Result<std::shared_ptr<const Image>> read_image(const fs::path& path, ColorDecod
 
 Result<std::shared_ptr<const Image>> decode_image(std::span<const std::byte> bytes, std::string_view name,
                                                   ColorDecoding decoding) {
-    const std::string copy(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return finish(decode(copy, decoding), std::string(name));
+    return finish(decode(copied(bytes), decoding), std::string(name));
+}
+
+Result<std::shared_ptr<const Image>> open_image(const fs::path& path, ColorDecoding decoding) {
+    Result<std::string> bytes = read_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return open_bytes(std::move(*bytes), path.string(), decoding);
+}
+
+Result<std::shared_ptr<const Image>> open_image(std::span<const std::byte> bytes, std::string_view name,
+                                                ColorDecoding decoding) {
+    return open_bytes(copied(bytes), std::string(name), decoding);
 }
 
 Result<void> write_image(const fs::path& path, const Image& image) {

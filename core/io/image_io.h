@@ -28,6 +28,12 @@ Result<std::shared_ptr<const Image>> read_image(const std::filesystem::path& pat
 Result<std::shared_ptr<const Image>> decode_image(std::span<const std::byte> bytes, std::string_view name,
                                                   ColorDecoding decoding);
 
+/// The same, but the pixels of what looks like a whole PNG or JPEG are decoded when somebody asks for them (`with_pixels`);
+/// until then the image keeps the bytes of the file.
+Result<std::shared_ptr<const Image>> open_image(const std::filesystem::path& path, ColorDecoding decoding);
+Result<std::shared_ptr<const Image>> open_image(std::span<const std::byte> bytes, std::string_view name,
+                                                ColorDecoding decoding);
+
 /// Writes r, g, b by extension: .exr, .pfm, .hdr as they are (linear floats); .png as 8 bit sRGB, so the caller has
 /// applied exposure and tone map and the pixels are display-linear in [0, 1] (clipped). The file appears whole or not at all.
 Result<void> write_image(const std::filesystem::path& path, const Image& image);

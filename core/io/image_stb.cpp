@@ -44,15 +44,20 @@ void append(void* context, void* data, int size) {
 
 }  // namespace
 
-Decoded decode_stb(std::string_view bytes, ColorDecoding decoding) {
+Decoded header_stb(std::string_view bytes) {
     if (bytes.size() > INT_MAX) return tl::unexpected<std::string>("is larger than 2 GiB");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    int width = 0, height = 0, channels = 0;
+    if (!stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels)) return failure();
+    return image_of_size(width, height);
+}
+
+Decoded decode_stb(std::string_view bytes, ColorDecoding decoding) {
+    Decoded image = header_stb(bytes);
+    if (!image) return image;
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
     int width = 0, height = 0, channels = 0;
-    if (!stbi_info_from_memory(data, size, &width, &height, &channels)) return failure();
-    Decoded image = image_of_size(width, height);
-    if (!image) return image;
-
     if (stbi_is_16_bit_from_memory(data, size)) {
         const StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &width, &height, &channels, 4));
         if (failed(pixels, *image, width, height)) return failure();

@@ -1,5 +1,7 @@
 #include "core/io/mesh_builder.h"
 
+#include "core/io/put_aside.h"
+
 #include <fmt/format.h>
 
 #include <numeric>
@@ -151,6 +153,7 @@ MeshResult finish_mesh(TriangleMesh mesh, const std::string& name, Problems* war
     for (Vec2& uv : mesh.uvs) {
         if (!is_finite(Vec3(uv, 0))) uv = Vec2(0);
     }
+    if (mesh.uvs.size() * sizeof(Vec2) >= kSmallestAside && (mesh.uvs_aside = put_aside(mesh.uvs))) mesh.uvs = {};
     return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 

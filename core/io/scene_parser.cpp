@@ -362,7 +362,7 @@ void SceneParser::load(Gltf& gltf, JsonObject& object) {
 void SceneParser::load(ImageEnvironment& environment, JsonObject& object) {
     if (environment.file.empty()) return;
     // A picture that is no panorama of floats is taken for what it shows.
-    if (auto image = cache_.image(environment.file, ColorDecoding::srgb, &warnings_)) {
+    if (auto image = cache_.panorama(environment.file, ColorDecoding::srgb, &warnings_)) {
         environment.image = *image;
     } else {
         tell(image.error(), object.place("file"));

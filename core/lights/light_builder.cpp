@@ -59,15 +59,16 @@ public:
     }
 
     void operator()(const std::shared_ptr<const TriangleMesh>& mesh) {
+        const auto uvs = material_ ? uvs_of(mesh) : nullptr;
         for (const glm::uvec3& t : mesh->triangles) {
             const Vec3 a = to_world_.point(mesh->positions[t.x]);
             const Vec3 b = to_world_.point(mesh->positions[t.y]);
             const Vec3 c = to_world_.point(mesh->positions[t.z]);
             EmissionTexture texture{material_};
-            if (!mesh->uvs.empty()) {
-                texture.uv_origin = mesh->uvs[t.x];
-                texture.uv_u = mesh->uvs[t.y] - mesh->uvs[t.x];
-                texture.uv_v = mesh->uvs[t.z] - mesh->uvs[t.x];
+            if (uvs) {
+                texture.uv_origin = (*uvs)[t.x];
+                texture.uv_u = (*uvs)[t.y] - (*uvs)[t.x];
+                texture.uv_v = (*uvs)[t.z] - (*uvs)[t.x];
             }
             flat(AreaLight::Kind::triangle, a, b - a, c - a, false, texture);
         }

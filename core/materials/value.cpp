@@ -23,7 +23,7 @@ Neighbours neighbours(float x, int size) {
 }  // namespace
 
 Vec4 sample_texture(const Image& image, const Vec2& uv) {
-    if (image.width <= 0 || image.height <= 0) return Vec4(0);
+    if (image.pixels.empty()) return Vec4(0);
     const Neighbours x = neighbours(uv.x, image.width), y = neighbours(1 - uv.y, image.height);
     return glm::mix(glm::mix(image.at(x.below, y.below), image.at(x.above, y.below), x.fraction),
                     glm::mix(image.at(x.below, y.above), image.at(x.above, y.above), x.fraction), y.fraction);

@@ -15,6 +15,8 @@ struct Problem {
 
     /// "file: place: cause" without the empty parts.
     std::string message() const;
+
+    bool operator==(const Problem&) const = default;
 };
 
 using Problems = std::vector<Problem>;

@@ -1,5 +1,6 @@
 #include "core/render/path_health.h"
 
+#include "core/materials/textures.h"
 #include "core/math/float_error.h"
 #include "core/render/path_tracer.h"
 #include "core/render/reference_trace.h"
@@ -89,7 +90,7 @@ void count_draws(const DrawDirection& draw, PathHealth& health) {
 PathHealth measure_path_health(const RenderScene& scene, std::uint32_t paths, const std::atomic<bool>& cancelled) {
     PathHealth health;
     for (const MaterialEntry& entry : scene.scene().materials) {
-        const Bsdf bsdf = make_bsdf(entry.material, Vec2(0.5f));
+        const Bsdf bsdf = make_bsdf(with_pixels(entry.material, [](const Image&) {}), Vec2(0.5f));
         for (const float cosine : kCosines) {
             if (cancelled) return health;
             const float sine = std::sqrt(1 - cosine * cosine);

@@ -1,6 +1,7 @@
 #include "core/render/render_scene.h"
 
 #include "core/accel/traced_object.h"
+#include "core/materials/textures.h"
 
 #include <algorithm>
 #include <unordered_map>
@@ -10,20 +11,9 @@ namespace rayuela {
 
 namespace {
 
-/// Calls use(image) for every image of the material.
-template <typename Use>
-void for_each_texture(const Material& material, Use&& use) {
-    const auto visit_field = [&](const auto& value, const Field&) {
-        if constexpr (requires { value.texture; }) {
-            if (value.texture) use(*value.texture);
-        }
-    };
-    std::visit([&](const auto& m) { m.visit_fields(m, visit_field); }, material);
-}
-
 PackedMaterial pack(const Material& material) {
     bool textured = false;
-    for_each_texture(material, [&](const Image&) { textured = true; });
+    for_each_texture(material, [&](const auto& texture) { textured |= texture != nullptr; });
     return {.material = material,
             .bsdf = make_bsdf(material, Vec2(0)),
             .textured = textured,
@@ -32,12 +22,6 @@ PackedMaterial pack(const Material& material) {
             .transmits = transmits(material),
             .delta = has_delta_lobe(material),
             .lobe = single_lobe(material, Vec2(0))};
-}
-
-std::vector<PackedMaterial> pack_all(const Scene& scene) {
-    std::vector<PackedMaterial> packed{pack(kDefaultMaterial)};
-    for (const MaterialEntry& entry : scene.materials) packed.push_back(pack(entry.material));
-    return packed;
 }
 
 bool same_ids(const Scene& a, const Scene& b) {
@@ -85,7 +69,7 @@ std::uint64_t bytes(const TriangleMesh& mesh) {
 }
 
 std::uint64_t bytes(const Image& image) {
-    return image.pixels.size() * sizeof(Vec4);
+    return image.pixels.size() * sizeof(Vec4) + (image.encoded ? image.encoded->source_bytes() : 0);
 }
 
 /// The middle of the objects where they are many times their extent away from 0 and can be moved there without rounding.
@@ -163,7 +147,6 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
     const bool trees = geometry || changes.accel;
     const bool objects = trees || changes.assignment || (materials && !same_ids(*previous->scene_, *next->scene_));
 
-    if (materials) next->materials_ = std::make_shared<const PackedMaterials>(pack_all(*next->scene_));
     if (objects) {
         std::vector<GeometryInstance> instances;
         FlatObjects flat;
@@ -177,15 +160,48 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
             next->accelerator_ = Accelerator::build(std::move(instances), settings,
                                                     previous ? &previous->accelerator() : nullptr, control);
             if (!next->accelerator_) return nullptr;
-            if (geometry) next->surfaces_ = std::make_shared<const Surfaces>(next->accelerator_->instances());
         }
     }
+    if (materials || (objects && next->used_materials() != previous->used_materials())) next->pack_materials();
+    if (geometry || next->textured_objects() != previous->textured_objects()) next->find_surfaces();
     if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);
     const bool may_shine = materials || objects || changes.environment;
     const bool same_lights = !may_shine || next->update_lights(previous);
     next->features_ = next->find_features();
     if (may_shine) next->update_emission(previous, same_lights);
     return next;
+}
+
+/// Of all materials, whether a visible object has it.
+std::vector<bool> RenderScene::used_materials() const {
+    std::vector<bool> used(scene_->materials.size() + 1, false);
+    for (const FlatObject& object : *objects_) used[object.material] = true;
+    return used;
+}
+
+/// Images are decoded for the materials in use.
+void RenderScene::pack_materials() {
+    problems_.clear();
+    const std::vector<bool> used = used_materials();
+    PackedMaterials packed{pack(kDefaultMaterial)};
+    for (const MaterialEntry& entry : scene_->materials) {
+        const auto lost = [&](const Image& image) {
+            problems_.push_back({image.source, "", "cannot be decoded: shown without this image"});
+        };
+        packed.push_back(pack(used[packed.size()] ? with_pixels(entry.material, lost) : entry.material));
+    }
+    materials_ = std::make_shared<const PackedMaterials>(std::move(packed));
+}
+
+std::vector<std::uint8_t> RenderScene::textured_objects() const {
+    std::vector<std::uint8_t> textured;
+    for (const FlatObject& object : *objects_) textured.push_back((*materials_)[object.material].textured ? 1 : 0);
+    return textured;
+}
+
+/// Texture coordinates are in memory where textures read them.
+void RenderScene::find_surfaces() {
+    surfaces_ = std::make_shared<const Surfaces>(accelerator_->instances(), textured_objects());
 }
 
 /// Whether the lights are those of `previous` (may be null), but for the numbers of their objects.
@@ -254,8 +270,7 @@ std::shared_ptr<const LightEmission> RenderScene::find_emission() const {
 Features RenderScene::find_features() const {
     Features features{
         .environment = !environment_.is_black(), .lights = !lights_->empty(), .lens = scene_->camera.lens_radius > 0};
-    std::vector<bool> used(materials_->size(), false);
-    for (const FlatObject& object : *objects_) used[object.material] = true;
+    const std::vector<bool> used = used_materials();
     for (std::size_t i = 0; i < used.size(); ++i) {
         if (!used[i]) continue;
         features.emitters |= (*materials_)[i].emissive;
@@ -276,7 +291,11 @@ std::uint64_t RenderScene::memory_bytes() const {
     for (const GeometryInstance& instance : accelerator_->instances()) {
         if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) add(**mesh);
     }
-    for (const PackedMaterial& packed : *materials_) for_each_texture(packed.material, add);
+    for (const PackedMaterial& packed : *materials_) {
+        for_each_texture(packed.material, [&](const auto& texture) {
+            if (texture) add(*texture);
+        });
+    }
     if (const Image* image = environment_.image()) add(*image);
     return total;
 }

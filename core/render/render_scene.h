@@ -7,6 +7,7 @@
 #include "core/lights/light_table.h"
 #include "core/materials/bsdf.h"
 #include "core/materials/single_lobe.h"
+#include "core/math/result.h"
 #include "core/render/features.h"
 #include "core/render/shortcuts.h"
 #include "core/scene/scene.h"
@@ -62,6 +63,8 @@ public:
     const Material& material(std::uint32_t hit_object) const { return packed_material(hit_object).material; }
     /// Trees, lights, meshes and images, each counted once.
     std::uint64_t memory_bytes() const;
+    /// What is missing though its file was there when it was opened; shown without it.
+    const Problems& problems() const { return problems_; }
 
 private:
     struct FlatObject {
@@ -72,6 +75,10 @@ private:
     using PackedMaterials = std::vector<PackedMaterial>;
 
     void flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const;
+    void pack_materials();
+    void find_surfaces();
+    std::vector<bool> used_materials() const;
+    std::vector<std::uint8_t> textured_objects() const;
     bool update_lights(const RenderScene* previous);
     void update_emission(const RenderScene* previous, bool same_lights);
     std::vector<std::uint32_t> objects_with(bool PackedMaterial::*property) const;
@@ -83,13 +90,15 @@ private:
     std::shared_ptr<const Scene> scene_;
     Vec3 origin_{0};
     std::shared_ptr<const FlatObjects> objects_;
-    std::shared_ptr<const PackedMaterials> materials_;  ///< The default material, then the scene's.
+    /// The default material, then the scene's. Images of those that no visible object has may be without pixels.
+    std::shared_ptr<const PackedMaterials> materials_;
     std::shared_ptr<const Accelerator> accelerator_;
     std::shared_ptr<const Surfaces> surfaces_;
     std::shared_ptr<const LightTable> lights_;
     std::shared_ptr<const LightEmission> emission_;
     EnvironmentLight environment_;
     Features features_;
+    Problems problems_;
 };
 
 /// What lies under a point of the image, for picking, focus and read-out.

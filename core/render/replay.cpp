@@ -40,7 +40,7 @@ ReplayRow arrival(const RenderScene& scene, const PathRecord::Vertex& v) {
     row.t = fmt::format("{:.9g}", v.hit.t);
     row.point = to_text(v.point.p + scene.origin());
     row.error = to_text(v.point.p_error);
-    const Vec2 uv = scene.surfaces().point(v.ray, v.hit).uv;  // the path may not have asked for it
+    const Vec2 uv = surface_point(scene.accelerator().instances(), v.ray, v.hit).uv;  // the path may not have it
     row.normal = fmt::format("{} shading {}, uv ({:.6g} {:.6g})", to_text(v.point.ng), to_text(v.point.ns), uv.x, uv.y);
     const bool front = glm::dot(v.ray.direction, v.point.ng) < 0;
     const Color light = emitted(material, uv, front);

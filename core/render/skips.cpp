@@ -1,6 +1,7 @@
 #include "core/render/skips.h"
 
 #include "core/accel/kd_accelerator.h"
+#include "core/materials/textures.h"
 #include "core/render/render_scene.h"
 
 #include <fmt/format.h>
@@ -265,21 +266,63 @@ std::vector<Skip> copies_of_meshes(const RenderScene& scene) {
              .unit = "bytes"}};
 }
 
-template <typename Attribute>
-Skip attribute_of_vertices(const RenderScene& scene, std::string_view name,
-                           std::vector<Attribute> TriangleMesh::*member, std::string_view without) {
-    std::unordered_set<const TriangleMesh*> seen;
-    std::uint64_t bytes = 0;
+/// Distinct meshes of visible objects.
+std::unordered_set<const TriangleMesh*> meshes_of(const RenderScene& scene) {
+    std::unordered_set<const TriangleMesh*> meshes;
     for (const GeometryInstance& instance : scene.accelerator().instances()) {
-        const TriangleMesh* mesh = mesh_of(instance);
-        if (mesh && seen.insert(mesh).second && (mesh->*member).empty())
-            bytes += mesh->positions.size() * sizeof(Attribute);
+        if (const TriangleMesh* mesh = mesh_of(instance)) meshes.insert(mesh);
     }
-    return {.name = name,
-            .state = seen.empty() ? SkipState::absent : skipped_if(bytes > 0),
-            .why = bytes > 0      ? std::string(without)
-                   : seen.empty() ? "There is no mesh."
-                                  : "All meshes bring them.",
+    return meshes;
+}
+
+Skip normals_of_vertices(const RenderScene& scene) {
+    const auto meshes = meshes_of(scene);
+    std::uint64_t bytes = 0;
+    for (const TriangleMesh* mesh : meshes) bytes += mesh->normals.empty() ? mesh->positions.size() * sizeof(Vec3) : 0;
+    return {.name = "Normals of vertices",
+            .state = meshes.empty() ? SkipState::absent : skipped_if(bytes > 0),
+            .why = bytes > 0        ? "Meshes without them store none and are flat."
+                   : meshes.empty() ? "There is no mesh."
+                                    : "All meshes bring them.",
+            .saved = bytes,
+            .unit = "bytes"};
+}
+
+Skip uvs_of_vertices(const RenderScene& scene) {
+    const auto meshes = meshes_of(scene);
+    std::uint64_t missing = 0, aside = 0;
+    for (const TriangleMesh* mesh : meshes) {
+        missing += mesh->has_uvs() ? 0 : mesh->positions.size() * sizeof(Vec2);
+        aside += mesh->bytes_aside();
+    }
+    return {.name = "Texture coordinates of vertices",
+            .state = meshes.empty() ? SkipState::absent : skipped_if(missing + aside > 0),
+            .why = aside > 0        ? "No texture reads those of some meshes: they wait in a file."
+                   : missing > 0    ? "Meshes without them store none."
+                   : meshes.empty() ? "There is no mesh."
+                                    : "Textures read them, or they are few.",
+            .saved = missing + aside,
+            .unit = "bytes"};
+}
+
+Skip pixels_of_textures(const RenderScene& scene) {
+    std::unordered_set<const Image*> images;
+    std::uint64_t bytes = 0, encoded = 0;
+    for (const MaterialEntry& entry : scene.scene().materials) {
+        for_each_texture(entry.material, [&](const std::shared_ptr<const Image>& image) {
+            if (!image || !images.insert(image.get()).second) return;
+            if (!image->encoded || image->encoded->if_made()) return;
+            ++encoded;
+            bytes +=
+                static_cast<std::uint64_t>(image->width) * static_cast<std::uint64_t>(image->height) * sizeof(Vec4);
+        });
+    }
+    return {.name = "Pixels of textures",
+            .state = images.empty() ? SkipState::absent : skipped_if(encoded > 0),
+            .why = encoded > 0 ? fmt::format("{} of {} stay as the file has them: nothing visible shows them.", encoded,
+                                             count_of(images.size(), "image"))
+                   : images.empty() ? "No material has an image."
+                                    : "Visible objects show all images.",
             .saved = bytes,
             .unit = "bytes"};
 }
@@ -325,10 +368,9 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
                             cells_of_trees(scene),
                             hidden_objects(scene)};
     std::ranges::move(copies_of_meshes(scene), std::back_inserter(skips));
-    skips.push_back(attribute_of_vertices(scene, "Normals of vertices", &TriangleMesh::normals,
-                                          "Meshes without them store none and are flat."));
-    skips.push_back(attribute_of_vertices(scene, "Texture coordinates of vertices", &TriangleMesh::uvs,
-                                          "Meshes without them store none."));
+    skips.push_back(normals_of_vertices(scene));
+    skips.push_back(uvs_of_vertices(scene));
+    skips.push_back(pixels_of_textures(scene));
     return skips;
 }
 

@@ -197,6 +197,31 @@ Outcome convergence(double scale) {
     return outcome;
 }
 
+/// How often a scene with a plain mesh and a hidden textured one decodes the image or reads texture coordinates.
+int reads_of_what_is_not_shown() {
+    const auto reads = std::make_shared<int>(0);
+    auto image = std::make_shared<Image>(Image{1, 1, {}, "image"});
+    image->encoded = std::make_shared<const Lazy<Image>>([=] {
+        ++*reads;
+        return std::make_shared<const Image>(Image{1, 1, {Vec4(0.5f)}, "image"});
+    });
+    auto mesh = std::make_shared<TriangleMesh>(*torus_mesh());
+    mesh->uvs_aside = std::make_shared<const Lazy<std::vector<Vec2>>>([reads, count = mesh->positions.size()] {
+        ++*reads;
+        return std::make_shared<const std::vector<Vec2>>(count);
+    });
+    Scene scene = empty_scene(32, 32);
+    scene.render.max_samples = 2;
+    add_object(scene, Mesh{"torus", mesh}, add_material(scene, Diffuse{}));
+    add_object(scene, Mesh{"torus", mesh}, add_material(scene, Diffuse{{Color(1), image}}));
+    scene.objects.back().visible = false;
+    render_fresh(scene);
+    const int hidden = *reads;
+    scene.objects.back().visible = true;
+    render_fresh(scene);
+    return *reads == 2 ? hidden : -1;
+}
+
 /// What a scene does not have costs nothing, by the counters.
 Outcome economy(double) {
     Outcome outcome;
@@ -223,6 +248,7 @@ Outcome economy(double) {
     expect(direct.rays == direct.samples && direct.shadow_rays == 0, "no bounce: only camera rays");
     expect(!make_render_scene(scene)->features().textures && !make_render_scene(scene)->features().lens,
            "no texture, no lens");
+    expect(reads_of_what_is_not_shown() == 0, "no textured object in sight: no image decoded, no uv in memory");
     return outcome;
 }
 

@@ -47,7 +47,7 @@ void draw_name(Editor& editor, const Object& object) {
 std::string shape_details(const Shape& shape) {
     if (const Mesh* mesh = std::get_if<Mesh>(&shape); mesh && mesh->data) {
         return fmt::format("{} triangles, {} vertices{}{}", mesh->data->triangles.size(), mesh->data->positions.size(),
-                           mesh->data->normals.empty() ? ", flat" : ", smooth", mesh->data->uvs.empty() ? "" : ", uv");
+                           mesh->data->normals.empty() ? ", flat" : ", smooth", mesh->data->has_uvs() ? ", uv" : "");
     }
     if (const Gltf* gltf = std::get_if<Gltf>(&shape); gltf && gltf->geometry) {
         std::size_t triangles = 0;

@@ -127,6 +127,56 @@ TEST(ImageIo, DamagedFilesAreRefused) {
     }
 }
 
+TEST(ImageIo, AnOpenedImageHasPixelsOnceSomebodyAsks) {
+    const TempFolder folder;
+    ASSERT_TRUE(write_image(folder.path / "a.png", random_image(40, 30)));
+    for (const ColorDecoding decoding : {ColorDecoding::srgb, ColorDecoding::linear}) {
+        const auto opened = open_image(folder.path / "a.png", decoding);
+        const auto expected = read_image(folder.path / "a.png", decoding);
+        ASSERT_TRUE(opened && expected);
+        EXPECT_EQ((*opened)->width, 40);
+        EXPECT_EQ((*opened)->height, 30);
+        EXPECT_TRUE((*opened)->pixels.empty());
+        ASSERT_TRUE((*opened)->encoded);
+        EXPECT_EQ((*opened)->encoded->source_bytes(), std::filesystem::file_size(folder.path / "a.png"));
+        EXPECT_EQ((*opened)->encoded->if_made(), nullptr);
+        std::filesystem::rename(folder.path / "a.png", folder.path / "b.png");  // It is not needed any more.
+        const auto seen = with_pixels(*opened);
+        std::filesystem::rename(folder.path / "b.png", folder.path / "a.png");
+        ASSERT_TRUE(seen);
+        EXPECT_EQ(seen->pixels, (*expected)->pixels);
+        EXPECT_EQ(seen->source, (*expected)->source);
+        EXPECT_EQ(with_pixels(*opened), seen) << "it is decoded once";
+        EXPECT_EQ(with_pixels(*expected), *expected);
+    }
+    ASSERT_TRUE(write_image(folder.path / "a.exr", random_image(4, 3)));
+    EXPECT_EQ((*open_image(folder.path / "a.exr", ColorDecoding::linear))->pixels.size(), 12u)
+        << "floats are looked at when they are read";
+}
+
+TEST(ImageIo, WhatIsWrongWithAnImageIsSaidWhenItIsOpened) {
+    const TempFolder folder;
+    ASSERT_TRUE(write_image(folder.path / "a.png", random_image(40, 30)));
+    const std::string bytes = testing::slurp(folder.path / "a.png");
+    for (std::size_t size = 0; size < bytes.size(); size += 97) {
+        const auto path = folder.write("cut.png", bytes.substr(0, size));
+        const auto opened = open_image(path, ColorDecoding::srgb), read = read_image(path, ColorDecoding::srgb);
+        ASSERT_EQ(opened.has_value(), read.has_value()) << size;
+        if (opened) {
+            EXPECT_EQ((*opened)->encoded, nullptr) << size;
+        } else {
+            EXPECT_EQ(opened.error(), read.error()) << size;
+        }
+    }
+    // A bit that is wrong fails the checksum of its chunk: such a file is decoded at once, whatever comes of it.
+    for (std::size_t at = 8; at + 12 < bytes.size(); at += 41) {
+        std::string damaged = bytes;
+        damaged[at] = static_cast<char>(damaged[at] ^ 4);
+        const auto opened = open_image(folder.write("damaged.png", damaged), ColorDecoding::srgb);
+        EXPECT_TRUE(!opened || !(*opened)->encoded) << at;
+    }
+}
+
 TEST(ImageIo, HugeSizesAreRefusedBeforeAllocation) {
     const TempFolder folder;
     const auto pfm = read_image(folder.write("a.pfm", "PF\n2000000000 2000000000\n-1\n"), ColorDecoding::linear);

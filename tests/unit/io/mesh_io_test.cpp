@@ -3,6 +3,7 @@
 #include "core/io/mesh_builder.h"
 #include "core/io/obj_reader.h"
 #include "core/io/ply_reader.h"
+#include "core/io/put_aside.h"
 #include "tests/unit/io/temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -265,6 +266,48 @@ TEST(WriteMesh, ReadingGivesTheSameFloats) {
             }
         }
     }
+}
+
+TEST(ReadMesh, ManyTextureCoordinatesArePutAside) {
+    const TempFolder folder;
+    TriangleMesh mesh;
+    constexpr std::uint32_t kVertices = kSmallestAside / sizeof(Vec2);
+    for (std::uint32_t i = 0; i < kVertices; ++i) {
+        const auto x = static_cast<float>(i);
+        mesh.positions.emplace_back(x, x * x, 1);
+        mesh.uvs.emplace_back(1 / (x + 1), -x);
+    }
+    mesh.triangles.emplace_back(0, 1, kVertices - 1);
+    ASSERT_TRUE(write_mesh(folder.path / "a.ply", mesh));
+    const auto read = read_mesh(folder.path / "a.ply");
+    ASSERT_TRUE(read) << error_of(read);
+    std::filesystem::remove(folder.path / "a.ply");  // It is not needed any more.
+    const TriangleMesh& aside = **read;
+    ASSERT_TRUE(aside.uvs_aside) << "no file could be had in /var/tmp nor in /tmp";
+    EXPECT_TRUE(aside.has_uvs());
+    EXPECT_TRUE(aside.uvs.empty());
+    EXPECT_EQ(aside.bytes_aside(), mesh.uvs.size() * sizeof(Vec2));
+    EXPECT_EQ(aside.memory_bytes() + aside.bytes_aside(), mesh.memory_bytes());
+    {
+        const auto uvs = uvs_of(*read);
+        ASSERT_TRUE(uvs);
+        EXPECT_EQ(*uvs, mesh.uvs);
+        EXPECT_EQ(uvs_of(*read), uvs);
+        EXPECT_EQ(aside.bytes_aside(), 0u);
+        EXPECT_EQ(aside.memory_bytes(), mesh.memory_bytes());
+    }
+    EXPECT_GT(aside.bytes_aside(), 0u) << "nobody holds them any more";
+    EXPECT_EQ(*uvs_of(*read), mesh.uvs) << "a second time";
+
+    ASSERT_TRUE(write_mesh(folder.path / "b.ply", aside));
+    ASSERT_TRUE(write_mesh(folder.path / "a.ply", mesh));
+    EXPECT_EQ(testing::slurp(folder.path / "b.ply"), testing::slurp(folder.path / "a.ply"));
+
+    mesh.positions.pop_back();
+    mesh.uvs.pop_back();
+    mesh.triangles[0].z = 2;
+    ASSERT_TRUE(write_mesh(folder.path / "c.ply", mesh));
+    EXPECT_EQ((*read_mesh(folder.path / "c.ply"))->uvs, mesh.uvs) << "a file costs more than few would save";
 }
 
 TEST(ReadMesh, UnknownAndMissingFiles) {

@@ -1,3 +1,4 @@
+#include "core/io/image_io.h"
 #include "core/io/json.h"
 #include "core/io/scene_reader.h"
 #include "core/scene/scene_edit.h"
@@ -151,6 +152,16 @@ TEST(SceneErrors, BrokenFilesOfAScene) {
                 HasSubstr("materials.m.albedo.texture: " + (folder.path / "bad.png").string() + ": is no image"));
     EXPECT_THAT(errors, HasSubstr("objects[0].file: " + (folder.path / "bad.obj").string() +
                                   ": line 2: vertex 2 does not exist"));
+}
+
+TEST(SceneErrors, ABrokenImageThatNothingShowsIsTold) {
+    const testing::TempFolder folder;
+    ASSERT_TRUE(write_image(folder.path / "a.png", Image{64, 64, std::vector<Vec4>(64 * 64, Vec4(0.5f)), {}}));
+    const std::string bytes = testing::slurp(folder.path / "a.png");
+    folder.write("bad.png", std::string_view(bytes).substr(0, bytes.size() / 2));
+    const std::string errors = errors_of(
+        R"({"rayuela": 1, "materials": {"m": {"type": "diffuse", "albedo": {"texture": "bad.png"}}}})", folder.path);
+    EXPECT_THAT(errors, HasSubstr("materials.m.albedo.texture: " + (folder.path / "bad.png").string() + ": "));
 }
 
 TEST(SceneErrors, FilesThatAreNoScenes) {

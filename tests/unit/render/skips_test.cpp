@@ -168,6 +168,136 @@ TEST(Skips, InstancesShareMeshAndTree) {
     EXPECT_LT(added, saved / 10);
 }
 
+/// Three tori of one mesh, the last one hidden, whose texture coordinates are aside; counts how often they are read.
+struct Tori {
+    std::shared_ptr<int> reads = std::make_shared<int>(0);
+    std::shared_ptr<TriangleMesh> mesh = std::make_shared<TriangleMesh>(*torus_mesh());
+    std::uint64_t bytes = mesh->positions.size() * 8;
+    Scene scene = lit_ball(Diffuse{});
+
+    explicit Tori(bool aside) {
+        std::vector<Vec2> uvs;
+        for (const Vec3& p : mesh->positions) uvs.emplace_back(0.5f * p.x, 0.5f * p.y);
+        if (aside) {
+            mesh->uvs_aside = std::make_shared<const Lazy<std::vector<Vec2>>>([uvs, reads = reads] {
+                ++*reads;
+                return std::make_shared<const std::vector<Vec2>>(uvs);
+            });
+        } else {
+            mesh->uvs = uvs;
+        }
+        for (const float x : {-2.0f, 2.0f, 0.0f})
+            add_object(scene, Mesh{"torus", mesh}, add_material(scene, Diffuse{}), {.translate = Vec3(x, 1, 0)});
+        scene.objects.back().visible = false;
+    }
+    /// A checkered image for the torus number i.
+    void texture(std::size_t i) {
+        auto image = std::make_shared<Image>(Image{2, 1, {Vec4(0.9f), Vec4(0.1f)}, "checker"});
+        std::get<Diffuse>(scene.materials[3 + i].material).albedo.texture = image;
+    }
+};
+
+TEST(Skips, TextureCoordinatesThatNobodyReadsAreNotInMemory) {
+    Tori tori(true);
+    const auto skip = [&] { return skip_of(tori.scene, "Texture coordinates of vertices"); };
+    EXPECT_EQ(skip().state, SkipState::skipped);
+    EXPECT_EQ(skip().saved, tori.bytes);
+    tori.texture(2);
+    EXPECT_EQ(skip().saved, tori.bytes) << "a texture that only a hidden object has";
+    EXPECT_EQ(*tori.reads, 0);
+    const std::uint64_t without = make_render_scene(tori.scene)->memory_bytes();
+
+    tori.texture(0);
+    tori.texture(1);
+    {
+        const auto built = make_render_scene(tori.scene);
+        EXPECT_EQ(*tori.reads, 1) << "both tori share them";
+        const std::uint64_t images = 2 * 2 * sizeof(Vec4);
+        EXPECT_EQ(built->memory_bytes(), without + tori.bytes + images);
+        const std::vector<Skip> skips = skips_of(*built);
+        const auto found = std::ranges::find(skips, std::string_view("Texture coordinates of vertices"), &Skip::name);
+        EXPECT_EQ(found->state, SkipState::needed);
+        EXPECT_EQ(found->saved, 0u);
+    }
+    EXPECT_EQ(tori.mesh->bytes_aside(), tori.bytes) << "they go with the scene that reads them";
+}
+
+TEST(Skips, ATextureThatComesLaterFindsItsCoordinates) {
+    Tori tori(true), plain(false);
+    const auto before = make_render_scene(tori.scene);
+    tori.texture(1);
+    plain.texture(1);
+    BuildControl control;
+    const auto after = RenderScene::update(before.get(), std::make_shared<const Scene>(tori.scene),
+                                           diff(before->scene(), tori.scene), control);
+    EXPECT_EQ(control.total, 0u) << "no tree is built again";
+    EXPECT_EQ(*tori.reads, 1);
+    const auto expected = make_render_scene(plain.scene);
+    const std::span<const GeometryInstance> instances = expected->accelerator().instances();
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        if (!std::holds_alternative<std::shared_ptr<const TriangleMesh>>(instances[i].shape)) continue;
+        const Ray ray{.origin = Vec3(0, 5, 0), .direction = Vec3(0, -1, 0)};
+        const Hit hit{.t = 1, .u = 0.25f, .v = 0.5f, .object = i, .primitive = 7};
+        const bool textured = after->packed_material(i).textured;
+        EXPECT_EQ(after->surfaces().point(ray, hit).uv == expected->surfaces().point(ray, hit).uv, true);
+        EXPECT_EQ(after->surfaces().point(ray, hit).uv == Vec2(0.25f, 0.5f), !textured);
+    }
+    const auto image_of = [](const Scene& scene) { return glance_at(scene)->image.pixels; };
+    EXPECT_EQ(image_of(tori.scene), image_of(plain.scene));
+}
+
+/// An image of one colour that counts how often it is decoded.
+std::shared_ptr<const Image> encoded_image(const std::shared_ptr<int>& decoded, bool works = true) {
+    Image image{2, 2, {}, "picture"};
+    image.encoded = std::make_shared<const Lazy<Image>>(
+        [=]() -> std::shared_ptr<const Image> {
+            ++*decoded;
+            if (!works) return nullptr;
+            return std::make_shared<const Image>(Image{2, 2, std::vector<Vec4>(4, Vec4(0.25f)), "picture"});
+        },
+        7);
+    return std::make_shared<const Image>(image);
+}
+
+TEST(Skips, ImagesAreDecodedForWhatIsSeen) {
+    const auto decoded = std::make_shared<int>(0);
+    const auto image = encoded_image(decoded);
+    Scene scene = lit_ball(Diffuse{});
+    EXPECT_EQ(skip_of(scene, "Pixels of textures").state, SkipState::absent);
+    const MaterialId textured = add_material(scene, Diffuse{{Color(1), image}});
+    add_material(scene, Metal{{Color(1), image}});
+    EXPECT_EQ(skip_of(scene, "Pixels of textures").saved, 4 * sizeof(Vec4)) << "nothing has the materials";
+    add_object(scene, Sphere{Vec3(2, 1, 0), 1}, textured);
+    scene.objects.back().visible = false;
+    EXPECT_EQ(skip_of(scene, "Pixels of textures").state, SkipState::skipped);
+    const auto before = make_render_scene(scene);
+    EXPECT_EQ(*decoded, 0);
+
+    scene.objects.back().visible = true;
+    BuildControl control;
+    const auto after =
+        RenderScene::update(before.get(), std::make_shared<const Scene>(scene), diff(before->scene(), scene), control);
+    EXPECT_EQ(*decoded, 1);
+    EXPECT_EQ(skip_of(scene, "Pixels of textures").state, SkipState::needed);
+    EXPECT_EQ(*decoded, 1) << "another render scene shares the pixels";
+    EXPECT_TRUE(after->problems().empty());
+
+    Scene plain = scene;
+    std::get<Diffuse>(plain.materials[3].material).albedo.texture = with_pixels(image);
+    EXPECT_EQ(glance_at(scene)->image.pixels, glance_at(plain)->image.pixels);
+}
+
+TEST(Skips, AnImageThatDoesNotDecodeAfterAllIsTold) {
+    const auto tried = std::make_shared<int>(0);
+    Scene scene = lit_ball(Diffuse{{Color(0.5f), encoded_image(tried, false)}});
+    const auto built = make_render_scene(scene);
+    ASSERT_EQ(built->problems().size(), 1u);
+    EXPECT_EQ(built->problems()[0].file, "picture");
+    EXPECT_FALSE(built->features().textures) << "it is shown without the image";
+    scene.objects[1].visible = false;
+    EXPECT_TRUE(make_render_scene(scene)->problems().empty());
+}
+
 TEST(Skips, AttributesThatAMeshLacksTakeNoMemory) {
     Scene scene = lit_ball(Diffuse{});
     EXPECT_EQ(skip_of(scene, "Texture coordinates of vertices").state, SkipState::absent) << "no mesh";
