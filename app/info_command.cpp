@@ -1,6 +1,7 @@
 #include "app/skip_gains.h"
 #include "app/subcommands.h"
 #include "app/text_table.h"
+#include "core/accel/kd_accelerator.h"
 #include "core/render/render_scene.h"
 #include "core/render/render_session.h"
 #include "core/render/skips.h"
@@ -10,9 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 namespace rayuela {
 
@@ -26,28 +28,77 @@ std::map<std::string, int> count_by_type(const auto& entries, const auto& member
     return counts;
 }
 
+/// A mesh of visible objects, and its tree.
+struct MeshUse {
+    std::string name;  ///< Its file, or the object that brings it.
+    const TriangleMesh* mesh = nullptr;
+    int instances = 0;
+    std::uint64_t tree_bytes = 0;
+};
+
+std::string name_of_mesh(const RenderScene& built, std::uint32_t instance) {
+    const Object* object = built.scene().find(built.object_id(instance));
+    if (!object) return "?";
+    const auto* mesh = std::get_if<Mesh>(&object->shape);
+    return mesh ? std::filesystem::path(mesh->file).filename().string() : object->name;
+}
+
+/// The largest first.
+std::vector<MeshUse> meshes_in_use(const RenderScene& built) {
+    const auto* kd = dynamic_cast<const KdAccelerator*>(&built.accelerator());
+    const std::span<const GeometryInstance> instances = built.accelerator().instances();
+    std::vector<MeshUse> meshes;
+    std::map<const TriangleMesh*, std::size_t> index;
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instances[i].shape);
+        if (!mesh) continue;
+        const auto [entry, is_new] = index.emplace(mesh->get(), meshes.size());
+        if (is_new)
+            meshes.push_back({name_of_mesh(built, i), mesh->get(), 0, kd ? kd->mesh_tree(i)->stats.memory_bytes : 0});
+        ++meshes[entry->second].instances;
+    }
+    std::ranges::stable_sort(meshes, std::greater(), [](const MeshUse& use) { return use.mesh->triangles.size(); });
+    return meshes;
+}
+
+/// To one decimal; `triangles` may be 0.
+double bytes_a_triangle(std::uint64_t bytes, std::uint64_t triangles) {
+    return triangles > 0 ? std::round(10 * static_cast<double>(bytes) / static_cast<double>(triangles)) / 10 : 0;
+}
+
 /// What the meshes of all visible objects hold, each counted once.
-nlohmann::ordered_json describe_meshes(std::span<const GeometryInstance> instances) {
-    std::set<const TriangleMesh*> meshes;
-    for (const GeometryInstance& instance : instances) {
-        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape))
-            meshes.insert(mesh->get());
+nlohmann::ordered_json describe_meshes(const RenderScene& built) {
+    constexpr std::size_t kListed = 16;
+    const std::vector<MeshUse> meshes = meshes_in_use(built);
+    std::uint64_t triangles = 0, positions = 0, normals = 0, uvs = 0, aside = 0, trees = 0;
+    auto largest = nlohmann::ordered_json::object();
+    for (const MeshUse& use : meshes) {
+        const TriangleMesh& mesh = *use.mesh;
+        triangles += mesh.triangles.size();
+        positions += mesh.positions.size() * sizeof(Vec3);
+        normals += mesh.normals.size() * sizeof(Vec3);
+        uvs += mesh.has_uvs() ? mesh.positions.size() * sizeof(Vec2) - mesh.bytes_aside() : 0;
+        aside += mesh.bytes_aside();
+        trees += use.tree_bytes;
+        if (largest.size() == kListed || largest.contains(use.name)) continue;
+        const std::size_t count = mesh.triangles.size();
+        largest[use.name] = {{"triangles", count},
+                             {"instances", use.instances},
+                             {"bytes_a_triangle",
+                              {{"mesh", bytes_a_triangle(mesh.memory_bytes(), count)},
+                               {"tree", bytes_a_triangle(use.tree_bytes, count)}}}};
     }
-    double triangles = 0, indices = 0, positions = 0, normals = 0, uvs = 0;
-    const auto bytes = [](const auto& values) { return static_cast<double>(values.size() * sizeof(values[0])); };
-    for (const TriangleMesh* mesh : meshes) {
-        triangles += static_cast<double>(mesh->triangles.size());
-        indices += bytes(mesh->triangles);
-        positions += bytes(mesh->positions);
-        normals += bytes(mesh->normals);
-        uvs += bytes(mesh->uvs);
-    }
-    const auto each = [&](double total) { return triangles > 0 ? std::round(10 * total / triangles) / 10 : 0; };
-    return {
-        {"count", meshes.size()},
-        {"triangles", static_cast<std::uint64_t>(triangles)},
-        {"bytes_a_triangle",
-         {{"indices", each(indices)}, {"positions", each(positions)}, {"normals", each(normals)}, {"uvs", each(uvs)}}}};
+    const auto each = [&](std::uint64_t bytes) { return bytes_a_triangle(bytes, triangles); };
+    return {{"count", meshes.size()},
+            {"triangles", triangles},
+            {"bytes_a_triangle",
+             {{"indices", each(triangles * sizeof(glm::uvec3))},
+              {"positions", each(positions)},
+              {"normals", each(normals)},
+              {"uvs", each(uvs)},
+              {"uvs_aside", each(aside)},
+              {"trees", each(trees)}}},
+            {"largest", std::move(largest)}};
 }
 
 nlohmann::ordered_json describe(const RenderScene& built) {
@@ -61,7 +112,7 @@ nlohmann::ordered_json describe(const RenderScene& built) {
         {"materials", count_by_type(scene.materials, &MaterialEntry::material)},
         {"environment", std::visit([](const auto& e) { return e.kType; }, scene.environment)},
         {"lights", built.lights().size()},
-        {"meshes", describe_meshes(built.accelerator().instances())},
+        {"meshes", describe_meshes(built)},
         {"accelerator",
          {{"kind", scene.render.accel.kind == AcceleratorKind::kd ? "kd" : "list"},
           {"leaf_size", scene.render.accel.leaf_size},

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import time
+import zlib
 
 rayuela = sys.argv[1]
 scenes = pathlib.Path(os.environ["RAYUELA_ASSETS"]) / "scenes"
@@ -129,7 +130,13 @@ def test_info():
     pathlib.Path("two.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
     info = json.loads(run("info", "two.obj", "--json").stdout)
     assert info["meshes"]["triangles"] == 2
-    assert info["meshes"]["bytes_a_triangle"] == {"indices": 12, "positions": 24, "normals": 0, "uvs": 0}
+    each = info["meshes"]["bytes_a_triangle"]
+    trees = each.pop("trees")
+    assert each == {"indices": 12, "positions": 24, "normals": 0, "uvs": 0, "uvs_aside": 0}
+    assert info["meshes"]["largest"] == {
+        "two.obj": {"triangles": 2, "instances": 1, "bytes_a_triangle": {"mesh": 36, "tree": trees}}
+    }
+    assert trees > 40
     # Three corners and an extent of four bytes each in a leaf, its number, and whatever the nodes and the object take.
     assert info["accelerator"]["bytes_a_primitive"] > 44
 
@@ -170,6 +177,52 @@ def test_skips():
     table = run("info", scenes / "cornell.scene.json", "--skips").stdout
     assert len(table.splitlines()) == 2 + len(room)
     assert all(any(line.startswith(name) for line in table.splitlines()) for name in room)
+
+
+def png(width, height):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    rows = (b"\0" + bytes(3 * width)) * height
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    parts = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + parts
+
+
+def test_what_nothing_shows_is_not_in_memory():
+    side = 400
+    vertices = [(i / side, j / side) for i in range(side + 1) for j in range(side + 1)]
+    quads = [i * (side + 1) + j + 1 for i in range(side) for j in range(side)]
+    pathlib.Path("land.obj").write_text(
+        "".join(f"v {x} 0 {z}\n" for x, z in vertices)
+        + "".join(f"vt {x} {z}\n" for x, z in vertices)
+        + "".join(f"f {a}/{a} {b}/{b} {c}/{c}\n" for a in quads for b, c in [(a + 1, a + side + 1)])
+    )
+    pathlib.Path("picture.png").write_bytes(png(300, 200))
+
+    def skips(land, hidden):
+        colour = {"texture": "picture.png"}
+        scene = {
+            "rayuela": 1,
+            "materials": {
+                "plain": {"type": "diffuse"},
+                "picture": {"type": "diffuse", "albedo": colour},
+                "spare": {"type": "metal", "albedo": colour},
+            },
+            "objects": [
+                {"type": "mesh", "file": "land.obj", "material": land},
+                {"type": "sphere", "material": "picture", "visible": not hidden},
+            ],
+        }
+        pathlib.Path("land.scene.json").write_text(json.dumps(scene))
+        printed = json.loads(run("info", "land.scene.json", "--skips", "--json").stdout)["skips"]
+        left_out = {skip["name"]: skip.get("left_out", {"amount": 0})["amount"] for skip in printed}
+        return left_out["Texture coordinates of vertices"], left_out["Pixels of textures"]
+
+    uvs, pixels = 8 * (side * (side + 1) + side), 16 * 300 * 200
+    assert skips("plain", hidden=True) == (uvs, pixels)
+    assert skips("plain", hidden=False) == (uvs, 0)
+    assert skips("picture", hidden=True) == (0, 0)
 
 
 tests = [value for name, value in list(globals().items()) if name.startswith("test_")]
