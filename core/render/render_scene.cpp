@@ -1,5 +1,6 @@
 #include "core/render/render_scene.h"
 
+#include "core/accel/parallel.h"
 #include "core/accel/traced_object.h"
 #include "core/materials/textures.h"
 
@@ -181,16 +182,21 @@ std::vector<bool> RenderScene::used_materials() const {
 
 /// Images are decoded for the materials in use.
 void RenderScene::pack_materials() {
-    problems_.clear();
+    const std::vector<MaterialEntry>& entries = scene_->materials;
     const std::vector<bool> used = used_materials();
-    PackedMaterials packed{pack(kDefaultMaterial)};
-    for (const MaterialEntry& entry : scene_->materials) {
-        const auto lost = [&](const Image& image) {
-            problems_.push_back({image.source, "", "cannot be decoded: shown without this image"});
-        };
-        packed.push_back(pack(used[packed.size()] ? with_pixels(entry.material, lost) : entry.material));
-    }
+    std::vector<Problems> problems(entries.size());
+    PackedMaterials packed(entries.size() + 1, pack(kDefaultMaterial));
+    parallel_ranges(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto lost = [&](const Image& image) {
+                problems[i].push_back({image.source, "", "cannot be decoded: shown without this image"});
+            };
+            packed[i + 1] = pack(used[i + 1] ? with_pixels(entries[i].material, lost) : entries[i].material);
+        }
+    });
     materials_ = std::make_shared<const PackedMaterials>(std::move(packed));
+    problems_.clear();
+    for (const Problems& found : problems) problems_.insert(problems_.end(), found.begin(), found.end());
 }
 
 std::vector<std::uint8_t> RenderScene::textured_objects() const {
