@@ -40,9 +40,6 @@ constexpr float kNear = 5;
 /// Of edges that are closer to parallel than this sine the numbers of a point are lost in its rounding.
 constexpr double kLeastSine = 1.0 / 64;
 
-/// A rectangle or triangle is close up to so many times the half of its diagonal. Farther away its corners say as much for
-/// less time.
-constexpr double kClose = 2;
 /// The cosine of edges that stand at right angles but for the rounding of corners 2^7 sizes away from the origin.
 constexpr double kRightAngle = 0x1p-16;
 /// Of the half diagonal: narrower ones are not looked at as such, for their solid angle is lost in rounding.
@@ -82,6 +79,35 @@ RectangleFrame rectangle_frame(const Vec3d& u, const Vec3d& v) {
             .height = static_cast<float>(height / unit)};
 }
 
+/// Of a point of a flat light, along its edges.
+Vec2 position_on(const AreaLight& flat, const Vec3& point) {
+    const Vec3d d = Vec3d(point) - Vec3d(flat.origin), u(flat.edge_u), v(flat.edge_v), across = glm::cross(u, v);
+    const double area2 = glm::dot(across, across);
+    return {glm::dot(glm::cross(d, v), across) / area2, glm::dot(glm::cross(u, d), across) / area2};
+}
+
+/// A close flat light as seen from a receiver: even over the solid angle, but for the cosine at the receiver.
+template <typename View>
+class BentView {
+public:
+    BentView(const AreaLight& light, const LightReceiver& receiver, const View& view)
+        : view_(view), angle_(view.solid_angle()) {
+        const Vec3 a = light.origin - receiver.p, b = a + light.edge_u, c = a + light.edge_v;
+        const bool triangle = light.kind == AreaLight::Kind::triangle;
+        const std::array<Vec3, 4> corners{a, triangle ? a : b, triangle ? b : c, triangle ? c : a + light.diagonal()};
+        bent_ = cosine_warp(corners, view.closeness(), receiver.n);
+    }
+    Vec2 numbers(const Vec2& u) const { return bent_.sample(u); }
+    Vec2 position(const Vec2& numbers) const { return view_.sample(numbers, angle_); }
+    float pdf(const Vec2& numbers) const { return bent_.density(numbers) / angle_; }
+    float pdf_at(const Vec2& position) const { return pdf(view_.numbers_of(position, angle_)); }
+
+private:
+    View view_;
+    float angle_;
+    CornerWarp bent_;
+};
+
 Vec2 sphere_uv(const Vec3& own) {
     const float longitude = std::atan2(-own.z, own.x) * (0.5f * kInvPi);
     return {longitude < 0 ? longitude + 1 : longitude, std::atan2(std::hypot(own.x, own.z), own.y) * kInvPi};
@@ -103,7 +129,7 @@ void AreaLight::place(Kind flat_kind, const Vec3& corner, const Vec3& u, const V
     near2 = near_distance2(*this);
     const Vec3d du(u), dv(v);
     if (near2 > 0 && (kind == Kind::triangle ? looks_like_triangle(du, dv) : looks_like_rectangle(du, dv))) {
-        const double reach = kClose * half_diagonal(du, dv);
+        const double reach = double{kClose} * half_diagonal(du, dv);
         close2 = static_cast<float>(reach * reach);
         if (kind == Kind::parallelogram) frame = rectangle_frame(du, dv);
     }
@@ -187,9 +213,7 @@ std::optional<CornerWarp> AreaLight::warp(const LightReceiver& receiver) const {
 }
 
 Vec2 AreaLight::numbers_of(const Vec3& point) const {
-    const Vec3d d = Vec3d(point) - Vec3d(origin), u(edge_u), v(edge_v), across = glm::cross(u, v);
-    const double area2 = glm::dot(across, across);
-    const Vec2 position(glm::dot(glm::cross(d, v), across) / area2, glm::dot(glm::cross(u, d), across) / area2);
+    const Vec2 position = position_on(*this, point);
     return glm::clamp(kind == Kind::triangle ? invert_uniform_triangle(position) : position, 0.0f, 1.0f);
 }
 
@@ -199,8 +223,9 @@ std::optional<LightSample> AreaLight::sample_flat(const LightReceiver& receiver,
                       radiance_at(position));
     };
     const auto sample_view = [&](const auto& view) {
-        const float angle = view.solid_angle();
-        return sample_at(view.sample(u, angle), {1 / angle, 1});
+        const BentView bent(*this, receiver, view);
+        const Vec2 numbers = bent.numbers(u);
+        return sample_at(bent.position(numbers), {bent.pdf(numbers), 1});
     };
     if (const auto view = rectangle_view(receiver.p)) return sample_view(*view);
     if (const auto view = triangle_view(receiver.p)) return sample_view(*view);
@@ -252,8 +277,12 @@ AreaLight::SurfaceSample AreaLight::sample_surface(const Vec2& u, float u_side) 
 
 float AreaLight::pdf(const LightReceiver& receiver, const Vec3& wi, const Vec3& hit_point, const Vec3& ng) const {
     if (glm::dot(ng, wi) >= 0 && !two_sided) return 0;
-    if (const auto view = rectangle_view(receiver.p)) return 1 / view->solid_angle();
-    if (const auto view = triangle_view(receiver.p)) return 1 / view->solid_angle();
+    const auto view_pdf = [&](const auto& view) {
+        const Vec2 position = glm::clamp(position_on(*this, hit_point), 0.0f, 1.0f);
+        return BentView(*this, receiver, view).pdf_at(position);
+    };
+    if (const auto view = rectangle_view(receiver.p)) return view_pdf(*view);
+    if (const auto view = triangle_view(receiver.p)) return view_pdf(*view);
     float density = area_pdf(receiver.p, hit_point, wi, ng, area());
     if (kind == Kind::sphere) {
         if (const std::optional<Cone> cone = cone_of(*this, receiver.p)) return uniform_cone_pdf(cone->one_minus_cos);

@@ -53,7 +53,7 @@ struct AreaLight {
 
     /// A point of the light that shines towards the receiver, and its density per solid angle there: spheres by the cone they
     /// fill (from inside by area), all others by area, if near by what their corners send to the receiver, and close
-    /// rectangles and triangles evenly over their solid angle.
+    /// rectangles and triangles by solid angle and the cosine at the receiver.
     std::optional<LightSample> sample(const LightReceiver& receiver, const Vec2& u) const;
     /// Density with which `sample` draws the unit direction `wi`, which meets this light at `hit_point` with unit front
     /// normal `ng`.

@@ -33,6 +33,16 @@ private:
     }
 };
 
+HWY_INLINE CornerWarpLanes corner_warp(const Floats (&w)[4], FloatMask usable) {
+    const Floats one = all_lanes(1.0f);
+    const Floats scale = one / hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
+    usable = hn::And(usable, hn::Lt(scale, all_lanes(kInfinity)));
+    CornerWarpLanes warp;
+    for (std::size_t i = 0; i < 4; ++i)
+        warp.weights[i] = hn::IfThenElse(usable, hn::Max(w[i] * scale, all_lanes(kLeastCornerShare)), one);
+    return warp;
+}
+
 HWY_INLINE CornerWarpLanes corner_warp(const Vec3Lanes (&corners)[4], const Vec3Lanes& n) {
     const Floats zero = hn::Zero(FloatTag()), one = all_lanes(1.0f), infinity = all_lanes(kInfinity);
     Floats d2[4];
@@ -42,18 +52,19 @@ HWY_INLINE CornerWarpLanes corner_warp(const Vec3Lanes (&corners)[4], const Vec3
     const Floats d01 = d2[0] * d2[1], d23 = d2[2] * d2[3];
     const Floats closeness[] = {d2[1] * d23, d2[0] * d23, d01 * d2[3], d01 * d2[2]};
     const FloatMask everywhere = is_black(n);
-    CornerWarpLanes warp;
+    Floats weights[4];
     for (std::size_t i = 0; i < 4; ++i) {
         const Floats height = hn::IfThenElse(everywhere, one, hn::Max(dot(n, corners[i]), zero));
-        warp.weights[i] = closeness[i] * closeness[i] * height;
+        weights[i] = closeness[i] * closeness[i] * height;
     }
-    const auto& w = warp.weights;
-    const Floats most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
-    const Floats scale = one / most;
-    const FloatMask any = hn::And(hn::And(hn::Gt(unit, zero), hn::Lt(unit, infinity)), hn::Lt(scale, infinity));
-    for (Floats& weight : warp.weights)
-        weight = hn::IfThenElse(any, hn::Max(weight * scale, all_lanes(kLeastCornerShare)), one);
-    return warp;
+    return corner_warp(weights, hn::And(hn::Gt(unit, zero), hn::Lt(unit, infinity)));
+}
+
+HWY_INLINE CornerWarpLanes cosine_warp(const Vec3Lanes (&corners)[4], const Floats (&closeness)[4],
+                                       const Vec3Lanes& n) {
+    Floats weights[4];
+    for (std::size_t i = 0; i < 4; ++i) weights[i] = closeness[i] * hn::Max(dot(n, corners[i]), hn::Zero(FloatTag()));
+    return corner_warp(weights, hn::Not(is_black(n)));
 }
 
 }  // namespace rayuela::HWY_NAMESPACE

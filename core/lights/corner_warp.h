@@ -36,6 +36,16 @@ private:
 /// farther than what is between the corners, light may come from near it all the same.
 inline constexpr float kLeastCornerShare = 1.0f / 32;
 
+/// The density of these weights, but for a factor; even where all are 0.
+inline CornerWarp corner_warp(const std::array<float, 4>& weights) {
+    const auto& [w0, w1, w2, w3] = weights;
+    const float scale = 1 / std::max(std::max(w0, w1), std::max(w2, w3));
+    if (!(scale < kInfinity)) return {};
+    CornerWarp warp;
+    for (std::size_t i = 0; i < 4; ++i) warp.weights[i] = std::max(weights[i] * scale, kLeastCornerShare);
+    return warp;
+}
+
 /// The points `corners` of a lamp, as seen from a receiver at the origin whose half space is that of unit `n` (0: all), by the
 /// light a diffuse receiver gets from there: n . d / d^4, but for what is the same all over a plane.
 inline CornerWarp corner_warp(const std::array<Vec3, 4>& corners, const Vec3& n) {
@@ -47,18 +57,22 @@ inline CornerWarp corner_warp(const std::array<Vec3, 4>& corners, const Vec3& n)
     const float d01 = d2[0] * d2[1], d23 = d2[2] * d2[3];
     const std::array<float, 4> closeness{d2[1] * d23, d2[0] * d23, d01 * d2[3], d01 * d2[2]};
     const bool facing = !is_black(n);
-    CornerWarp warp;
+    std::array<float, 4> weights{};
     for (std::size_t i = 0; i < 4; ++i) {
         const float height = facing ? std::max(glm::dot(n, corners[i]), 0.0f) : 1.0f;
-        warp.weights[i] = closeness[i] * closeness[i] * height;
+        weights[i] = closeness[i] * closeness[i] * height;
     }
-    const std::array<float, 4>& w = warp.weights;
-    const float most = std::max(std::max(w[0], w[1]), std::max(w[2], w[3]));
-    const float scale = 1 / most;
-    if (!(unit > 0 && unit < kInfinity && scale < kInfinity))
-        return {};  // beyond the range of float, or below the horizon
-    for (float& weight : warp.weights) weight = std::max(weight * scale, kLeastCornerShare);
-    return warp;
+    return unit > 0 && unit < kInfinity ? corner_warp(weights) : CornerWarp{};
+}
+
+/// The same for directions to the corners that are mapped to, of which `closeness` is in proportion to one over the distance:
+/// n . w.
+inline CornerWarp cosine_warp(const std::array<Vec3, 4>& corners, const std::array<float, 4>& closeness,
+                              const Vec3& n) {
+    if (is_black(n)) return {};
+    std::array<float, 4> weights{};
+    for (std::size_t i = 0; i < 4; ++i) weights[i] = closeness[i] * std::max(glm::dot(n, corners[i]), 0.0f);
+    return corner_warp(weights);
 }
 
 }  // namespace rayuela

@@ -189,8 +189,8 @@ private:
         const FloatMask near = hn::Lt(distance2, of(lamps_.near2)), triangle = is(lamps_.is_triangle);
         const FloatMask close = hn::Lt(distance2, of(lamps_.close2));
         const FloatMask close_rectangle = hn::AndNot(triangle, close), close_triangle = hn::And(triangle, close);
-        if (!hn::AllFalse(d, close_rectangle)) view_rectangle(corner, u, close_rectangle, position);
-        if (!hn::AllFalse(d, close_triangle)) view_triangle(corner, u, close_triangle, position);
+        if (!hn::AllFalse(d, close_rectangle)) view_rectangle(corner, across, n, close_rectangle, position);
+        if (!hn::AllFalse(d, close_triangle)) view_triangle(corner, n, close_triangle, position);
         const FloatMask viewed = hn::Gt(position.solid_angle, hn::Zero(d));
         const FloatMask bent = hn::AndNot(viewed, near);
         if (!hn::AllFalse(d, bent)) warp(corner, across, n, bent, position);
@@ -199,28 +199,35 @@ private:
     }
 
     /// As AreaLight::rectangle_view has it.
-    HWY_INLINE void view_rectangle(const Vec3Lanes& corner, const Vec2Lanes& u, FloatMask close,
-                                   Position& position) const {
+    HWY_INLINE void view_rectangle(const Vec3Lanes& corner, const Vec3Lanes& across, const Vec3Lanes& n,
+                                   FloatMask close, Position& position) const {
         const RectangleFrameLanes frame{of(lamps_.frame_x), of(lamps_.frame_y), of(lamps_.frame_z),
                                         of(lamps_.frame_width), of(lamps_.frame_height)};
         const RectangleViewLanes view(frame, corner);
-        sample_view(view, u, hn::And(close, hn::Gt(view.z, all_lanes(kLeastHeight))), position);
+        const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v), corner + across};
+        sample_view(view, corners, n, hn::And(close, hn::Gt(view.z, all_lanes(kLeastHeight))), position);
     }
 
     /// As AreaLight::triangle_view has it.
-    HWY_INLINE void view_triangle(const Vec3Lanes& corner, const Vec2Lanes& u, FloatMask close,
+    HWY_INLINE void view_triangle(const Vec3Lanes& corner, const Vec3Lanes& n, FloatMask close,
                                   Position& position) const {
         const Floats height = hn::Abs(dot(corner, of(lamps_.normal)));
         const FloatMask above = hn::Gt(height * height, all_lanes(kLeastHeight2) * of(lamps_.close2));
-        const Vec3Lanes corners[] = {corner, corner + of(lamps_.edge_u), corner + of(lamps_.edge_v)};
-        sample_view(TriangleViewLanes(corners, of(lamps_.size), height), u, hn::And(close, above), position);
+        const Vec3Lanes b = corner + of(lamps_.edge_u), c = corner + of(lamps_.edge_v);
+        const TriangleViewLanes view({corner, b, c}, of(lamps_.size), height);
+        sample_view(view, {corner, corner, b, c}, n, hn::And(close, above), position);
     }
 
     template <typename View>
-    static HWY_INLINE void sample_view(const View& view, const Vec2Lanes& u, FloatMask here, Position& position) {
+    static HWY_INLINE void sample_view(const View& view, const Vec3Lanes (&corners)[4], const Vec3Lanes& n,
+                                       FloatMask here, Position& position) {
+        Floats closeness[4];
+        view.closeness(closeness);
+        const CornerWarpLanes warp = cosine_warp(corners, closeness, n);
+        const Vec2Lanes numbers = warp.sample(position.at);
         const Floats angle = view.solid_angle();
-        position.set(here, view.sample(u, angle));
-        position.solid_angle = hn::IfThenElse(here, all_lanes(1.0f) / angle, position.solid_angle);
+        position.set(here, view.sample(numbers, angle));
+        position.solid_angle = hn::IfThenElse(here, warp.density(numbers) / angle, position.solid_angle);
     }
 
     /// As AreaLight::warp has it.

@@ -67,6 +67,15 @@ struct RectangleViewLanes {
         return {hn::Min((x - x0) / (x1 - x0), one), hn::Min((y - y0) / (y1 - y0), one)};
     }
 
+    HWY_INLINE void closeness(Floats (&result)[4]) const {
+        const Floats r00 = distance(x0, y0), r10 = distance(x1, y0), r01 = distance(x0, y1), r11 = distance(x1, y1);
+        const Floats low = r00 * r10, high = r01 * r11;
+        result[0] = r10 * high;
+        result[1] = r00 * high;
+        result[2] = low * r11;
+        result[3] = low * r01;
+    }
+
 private:
     HWY_INLINE Floats distance(Floats x, Floats y) const { return hn::Sqrt(x * x + y * y + z * z); }
     static HWY_INLINE Floats clamp(Floats x, Floats low, Floats high) { return hn::Min(hn::Max(x, low), high); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/math/float_error.h"
 #include "core/math/sampling.h"
 
 #include <algorithm>
@@ -30,6 +31,9 @@ struct RectangleFrame {
     float width = 0, height = 0;
 };
 
+/// A rectangle or triangle is close up to so many times the half of its diagonal. Farther away its corners say as much for
+/// less time.
+inline constexpr float kClose = 2;
 /// Closer to its plane than this a rectangle is not looked at as such: differences of nearly equal sines would decide.
 inline constexpr float kLeastHeight = 1.0f / 8;
 
@@ -73,6 +77,23 @@ struct RectangleView {
         const float h = h0 + u.y * (h1 - h0);
         const float y = std::clamp(h * std::sqrt(dd / (1 - h * h)), y0, y1);
         return {std::min((x - x0) / (x1 - x0), 1.0f), std::min((y - y0) / (y1 - y0), 1.0f)};
+    }
+
+    /// The numbers that `sample` maps to this position.
+    Vec2 numbers_of(const Vec2& position, float angle) const {
+        RectangleView part = *this;
+        part.x1 = x0 + std::max(position.x, kUnitRoundoff) * (x1 - x0);
+        const float dd = part.x1 * part.x1 + z * z, y = y0 + position.y * (y1 - y0);
+        const float h0 = y0 / std::sqrt(dd + y0 * y0), h1 = y1 / std::sqrt(dd + y1 * y1);
+        const float h = y / std::sqrt(dd + y * y);
+        return glm::clamp(Vec2(part.solid_angle() / angle, (h - h0) / (h1 - h0)), 0.0f, 1.0f);
+    }
+
+    /// In proportion to one over the distance of the corners that (0, 0), (1, 0), (0, 1), (1, 1) are mapped to.
+    std::array<float, 4> closeness() const {
+        const float r00 = distance(x0, y0), r10 = distance(x1, y0), r01 = distance(x0, y1), r11 = distance(x1, y1);
+        const float low = r00 * r10, high = r01 * r11;
+        return {r10 * high, r00 * high, low * r11, low * r01};
     }
 
 private:

@@ -44,6 +44,12 @@ public:
         return {hn::Min(along_b * all, one), hn::Min(along_c * all, one)};
     }
 
+    HWY_INLINE void closeness(Floats (&result)[4]) const {
+        result[0] = result[1] = closeness_[0];
+        result[2] = closeness_[1];
+        result[3] = closeness_[2];
+    }
+
 private:
     Floats closeness_[3], ab_, ac_, bc_, volume_;
 };

@@ -10,7 +10,7 @@ namespace rayuela {
 
 /// Of the square of the distance within which a triangle is close: closer to its plane it is not looked at as such, for the
 /// directions to two corners may be nearly opposite.
-inline constexpr float kLeastHeight2 = 1.0f / 256;
+inline constexpr float kLeastHeight2 = kLeastHeight * kLeastHeight / (kClose * kClose);
 
 /// A triangle as seen from the origin. Arvo, "Stratified Sampling of Spherical Triangles", 1995, in the form of Peters, "BRDF
 /// Importance Sampling for Polygonal Lights", 2021, section 4: products of the directions to the corners instead of angles
@@ -46,6 +46,21 @@ public:
         const float all = 1 / (a * closeness_[0] + (along_b + along_c));
         return {std::min(along_b * all, 1.0f), std::min(along_c * all, 1.0f)};
     }
+
+    /// The numbers that `sample` maps to this position.
+    Vec2 numbers_of(const Vec2& position, float angle) const {
+        const float a = std::max(1 - position.x - position.y, 0.0f);
+        const float b = position.x * (closeness_[0] / closeness_[1]), c = position.y * (closeness_[0] / closeness_[2]);
+        const float d = std::sqrt(b * b + c * c + 2 * b * c * bc_);
+        if (!(d > 0)) return Vec2(0);
+        const float ad = (b * ab_ + c * ac_) / d, bd = (b + c * bc_) / d;
+        const float part = 2 * angle_of((1 + ab_) + (ad + bd), volume_ * (c / d));
+        const float all = std::sqrt((a - d) * (a - d) + 2 * a * d * (1 + ad)), cosine = (a + d * ad) / all;
+        return glm::clamp(Vec2(part / angle, d * d * (1 + ad) / (all * all * (1 + cosine))), 0.0f, 1.0f);
+    }
+
+    /// In proportion to one over the distance of the corners that (0, 0), (1, 0), (0, 1), (1, 1) are mapped to.
+    std::array<float, 4> closeness() const { return {closeness_[0], closeness_[0], closeness_[1], closeness_[2]}; }
 
 private:
     std::array<float, 3> closeness_;  ///< One over the distances of the corners a, b, c.

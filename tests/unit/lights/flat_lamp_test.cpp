@@ -135,6 +135,46 @@ TEST(RectangleView, KeepsStrataTogether) {
     }
 }
 
+TEST(RectangleView, NumbersOfAPositionAreThoseItWasDrawnBy) {
+    Random random(10);
+    for (int k = 0; k < 50'000; ++k) {
+        const RectangleView view = random_view(random);
+        const float angle = view.solid_angle();
+        const Vec2 u(random.uniform(), random.uniform()), found = view.numbers_of(view.sample(u, angle), angle);
+        const double tolerance = 1e-5 * (1 + 1 / angle);  // Directions are known to the rounding of their sines.
+        ASSERT_NEAR(found.x, u.x, tolerance) << k;
+        ASSERT_NEAR(found.y, u.y, tolerance) << k;
+    }
+    const RectangleView view({Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), 2, 2}, Vec3(-1, -1, 1));
+    for (const Vec2& corner : {Vec2(0), Vec2(1, 0), Vec2(0, 1), Vec2(1)}) {
+        const Vec2 found = view.numbers_of(corner, view.solid_angle());
+        EXPECT_NEAR(found.x, corner.x, 1e-6);
+        EXPECT_NEAR(found.y, corner.y, 1e-6);
+    }
+}
+
+TEST(CornerWarp, CosinesOfTheDirectionsToTheCorners) {
+    Random random(11);
+    for (int k = 0; k < 10'000; ++k) {
+        std::array<Vec3, 4> corners;
+        std::array<float, 4> closeness, cosines;
+        const Vec3 n = random.direction();
+        for (std::size_t i = 0; i < 4; ++i) {
+            corners[i] = random.in_cube();
+            closeness[i] = 3 / glm::length(corners[i]);
+            cosines[i] = glm::dot(glm::normalize(corners[i]), n);
+        }
+        const CornerWarp warp = cosine_warp(corners, closeness, n);
+        const float most = *std::ranges::max_element(cosines);
+        if (std::abs(most) < 0.01f) continue;  // a quotient of rounding
+        for (std::size_t i = 0; i < 4; ++i) {
+            const float expected = most > 0 ? std::max(cosines[i] / most, kLeastCornerShare) : 1;
+            ASSERT_NEAR(warp.weights[i], expected, 1e-4) << k;
+        }
+        EXPECT_EQ(cosine_warp(corners, closeness, Vec3(0)).density({0.3f, 0.6f}), 1) << "from everywhere";
+    }
+}
+
 TEST(CornerWarp, SamplesFollowItsDensity) {
     Random random(5);
     constexpr int kWarps = 40, kSide = 8, kCount = 1 << 15;

@@ -126,6 +126,25 @@ TEST(TriangleView, NumbersCutOffTheirShare) {
     }
 }
 
+TEST(TriangleView, NumbersOfAPositionAreThoseItWasDrawnBy) {
+    Random random(7);
+    for (int k = 0; k < 50'000; ++k) {
+        const TriangleView view = view_of(random_corners(random));
+        const float angle = view.solid_angle();
+        const Vec2 u(random.uniform(), random.uniform(0.02f, 1));
+        const Vec2 found = view.numbers_of(view.sample(u, angle), angle);
+        ASSERT_NEAR(found.x, u.x, 1e-4) << k;
+        ASSERT_NEAR(found.y, u.y, 1e-4) << k;
+    }
+    const TriangleView view = view_of({Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 1)});
+    const Vec2 corners[] = {Vec2(0), Vec2(1, 0), Vec2(0, 1)}, numbers[] = {Vec2(0), Vec2(0, 1), Vec2(1)};
+    for (int i = 0; i < 3; ++i) {
+        const Vec2 found = view.numbers_of(corners[i], view.solid_angle());
+        EXPECT_NEAR(found.x, numbers[i].x, 1e-6);
+        EXPECT_NEAR(found.y, numbers[i].y, 1e-6);
+    }
+}
+
 TEST(TriangleView, ExtremeNumbers) {
     Random random(5);
     constexpr float kMost = 1 - 0x1p-24f;
@@ -159,7 +178,7 @@ TEST(TriangleView, LampsOfAnyFormAreSampledWithTheDensityOfTheirDirections) {
         const float height = std::exp2(random.uniform(-30, 2)) * (k % 2 == 0 ? 1.0f : -1.0f);
         const float x = static_cast<float>(random.integer(-1, 3)) / 2,
                     y = static_cast<float>(random.integer(-1, 3)) / 2;
-        const LightReceiver receiver{light.origin + x * u + y * v + height * light.normal, random.direction()};
+        const LightReceiver receiver{light.origin + x * u + y * v + height * light.normal};
         const auto s = light.sample(receiver, {random.uniform(), random.uniform()});
         if (!s) continue;
         ASSERT_TRUE(s->pdf > 0 && s->pdf < kInfinity && is_finite(s->wi) && is_finite(s->target));
