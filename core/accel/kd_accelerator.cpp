@@ -94,7 +94,7 @@ bool KdAccelerator::build_object_tree(std::span<const Bounds3> bounds, BuildCont
     tree_ = std::move(*tree);
     all_apart_ = settings_.few_objects && tree_.nodes.size() == 1;
     if (all_apart_) apart.insert(apart.end(), tree_.references.begin(), tree_.references.end());
-    leaves_ = make_object_leaves(objects_, all_apart_ ? nullptr : &tree_, apart);
+    leaves_ = make_object_leaves(objects_, bounds, all_apart_ ? nullptr : &tree_, apart);
     all_bounds_ = tree_.bounds;
     for (const std::uint32_t i : apart) all_bounds_.extend(bounds[i]);
     return true;

@@ -18,7 +18,7 @@ ListAccelerator::ListAccelerator(std::vector<GeometryInstance> instances, const 
         all_bounds_.extend(bounds_.back());
         in_turn.push_back(i);
     }
-    leaves_ = make_object_leaves(objects_, nullptr, in_turn);
+    leaves_ = make_object_leaves(objects_, bounds_, nullptr, in_turn);
     for (const auto& [mesh, triangles] : meshes_) {
         stats_.primitives += triangles->stats.primitives;
         stats_.memory_bytes += triangles->stats.memory_bytes;

@@ -154,7 +154,7 @@ public:
             const ObjectLeaf& leaf = leaves_.leaves[visit.first];
             add_triangles(visit.slot, leaf);
             add_spheres(visit.slot, leaf);
-            test_others(block_.id[triangles_.ray(visit.slot)], leaf);
+            test_others(triangles_.ray(visit.slot), leaf);
         }
         decide_triangles();
         decide_spheres();
@@ -190,7 +190,7 @@ public:
             if (spheres_.add_to_packet(mask_of(lanes), spheres, leaf.spheres, i, name)) decide_spheres();
         }
         for (LaneBits rest = leaf.others > 0 ? lanes : 0; rest != 0; rest &= rest - 1)
-            test_others(block_.id[first_ + first_lane(rest)], leaf);
+            test_others(first_ + first_lane(rest), leaf);
         decide_spheres();
         for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
             go_on<kQuery>(first_lane(rest), first_ + first_lane(rest), block_, rays_, hits_, packet,
@@ -227,15 +227,42 @@ private:
                                    HWY_ATTR { keep_closer({.t = t}, object, 0, hits_[ray]); });
     }
 
-    HWY_INLINE void test_others(std::uint32_t id, const ObjectLeaf& leaf) {
-        for (std::uint32_t k = 0; k < leaf.others; ++k) {
-            const std::uint32_t object = leaves_.others[leaf.first_other + k];
-            if (scene_.mesh_trees[object]) {
-                candidates_.push_back({object, id});
-            } else {
-                intersect_object(scene_.objects, object, rays_[id], hits_[id]);
+    /// What ray i of the block may meet between its beginning and its closest hit so far.
+    HWY_INLINE void test_others(std::size_t i, const ObjectLeaf& leaf) {
+        const FloatTag d;
+        const std::uint32_t id = block_.id[i];
+        for (std::size_t k = 0; k < leaf.others; k += kLanes) {
+            const FloatMask meets = may_meet_bounds(i, leaf, k);
+            for (LaneBits bits = bits_of(d, hn::And(meets, hn::FirstN(d, leaf.others - k))); bits != 0;
+                 bits &= bits - 1) {
+                const std::uint32_t object = leaves_.others[leaf.first_other + k + first_lane(bits)];
+                if (scene_.mesh_trees[object]) {
+                    candidates_.push_back({object, id});
+                } else {
+                    intersect_object(scene_.objects, object, rays_[id], hits_[id]);
+                }
             }
         }
+    }
+
+    /// Ray i of the block against the bounds of others k to k + kLanes of a leaf: as against the planes of a tree.
+    HWY_INLINE FloatMask may_meet_bounds(std::size_t i, const ObjectLeaf& leaf, std::size_t k) const {
+        const FloatTag d;
+        const std::uint32_t id = block_.id[i];
+        const float* const runs = leaves_.other_bounds.data() + 6 * leaf.first_other + k;
+        Floats begin = hn::Set(d, rays_[id].t_min * block_.t_scale[i]);
+        Floats end = hn::Set(d, t_end(rays_[id], hits_[id]) * block_.t_scale[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Floats origin = hn::Set(d, block_.origin[axis][i]), inverse = hn::Set(d, block_.inverse[axis][i]);
+            const Floats overlap = hn::Set(d, block_.pad[i] * std::fabs(block_.inverse[axis][i]));
+            const Floats to_lo = (hn::LoadU(d, runs + axis * leaf.others) - origin) * inverse;
+            const Floats to_hi = (hn::LoadU(d, runs + (axis + 3) * leaf.others) - origin) * inverse;
+            const Floats enter = hn::Min(to_lo, to_hi) - overlap, leave = hn::Max(to_lo, to_hi) + overlap;
+            // Comparisons, because they leave begin and end alone where something is NaN.
+            begin = hn::IfThenElse(hn::Gt(enter, begin), enter, begin);
+            end = hn::IfThenElse(hn::Lt(leave, end), leave, end);
+        }
+        return hn::Not(hn::Gt(begin, end));
     }
 
     const KdScene& scene_;

@@ -11,7 +11,8 @@ bool is_world_sphere(const TracedObject& object) {
 
 class LeafWriter {
 public:
-    LeafWriter(std::span<const TracedObject> objects, ObjectLeaves& out) : objects_(objects), out_(out) {}
+    LeafWriter(std::span<const TracedObject> objects, std::span<const Bounds3> bounds, ObjectLeaves& out)
+        : objects_(objects), bounds_(bounds), out_(out) {}
 
     ObjectLeaf write(std::span<const std::uint32_t> references) {
         ObjectLeaf leaf;
@@ -25,6 +26,7 @@ public:
         leaf.others = size_of(out_.others) - leaf.first_other;
         write_triangles(leaf);
         write_spheres(leaf);
+        write_others(leaf);
         return leaf;
     }
 
@@ -71,7 +73,21 @@ private:
         }
     }
 
+    void write_others(const ObjectLeaf& leaf) {
+        const std::size_t n = leaf.others;
+        out_.other_bounds.resize(6 * (leaf.first_other + n));
+        float* const runs = out_.other_bounds.data() + 6 * leaf.first_other;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Bounds3& bounds = bounds_[out_.others[leaf.first_other + i]];
+            for (int axis = 0; axis < 3; ++axis) {
+                runs[static_cast<std::size_t>(axis) * n + i] = bounds.lo[axis];
+                runs[static_cast<std::size_t>(axis + 3) * n + i] = bounds.hi[axis];
+            }
+        }
+    }
+
     std::span<const TracedObject> objects_;
+    std::span<const Bounds3> bounds_;
     ObjectLeaves& out_;
     std::vector<TriangleCorners> corners_;
 };
@@ -81,13 +97,13 @@ private:
 std::uint64_t ObjectLeaves::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return bytes(leaves) + bytes(triangle_runs) + bytes(triangles) + bytes(sphere_runs) + bytes(spheres) +
-           bytes(others) + bytes(exact_spheres);
+           bytes(others) + bytes(other_bounds) + bytes(exact_spheres);
 }
 
-ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdTree* tree,
-                                std::span<const std::uint32_t> apart) {
+ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, std::span<const Bounds3> bounds,
+                                const KdTree* tree, std::span<const std::uint32_t> apart) {
     ObjectLeaves result;
-    LeafWriter writer(objects, result);
+    LeafWriter writer(objects, bounds, result);
     result.apart = writer.write(apart);
     if (tree) result.leaves.resize(tree->references.size());
     for (const KdNode& node : tree ? std::span(tree->nodes) : std::span<const KdNode>()) {
@@ -96,6 +112,7 @@ ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdT
     }
     result.triangle_runs.resize(result.triangle_runs.size() + kRunPadding);
     result.sphere_runs.resize(result.sphere_runs.size() + kRunPadding);
+    result.other_bounds.resize(result.other_bounds.size() + kRunPadding);
     if (result.spheres.empty()) return result;
     result.exact_spheres.resize(objects.size());
     for (const std::uint32_t index : result.spheres)

@@ -32,13 +32,14 @@ struct ObjectLeaves {
     std::vector<float> sphere_runs;      ///< For a leaf of n spheres: n times x, n times y, z and radius.
     std::vector<std::uint32_t> spheres;  ///< Objects.
     std::vector<std::uint32_t> others;   ///< Objects of all other shapes, meshes among them.
+    std::vector<float> other_bounds;     ///< For a leaf of n others: n times lo.x, lo.y, lo.z, hi.x, hi.y and hi.z.
     std::vector<SphereD> exact_spheres;  ///< One an object; only those of spheres in the world are used.
 
     std::uint64_t memory_bytes() const;
 };
 
-/// `tree` may be null.
-ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, const KdTree* tree,
-                                std::span<const std::uint32_t> apart);
+/// `bounds` are those of the objects; `tree` may be null.
+ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, std::span<const Bounds3> bounds,
+                                const KdTree* tree, std::span<const std::uint32_t> apart);
 
 }  // namespace rayuela
