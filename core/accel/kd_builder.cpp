@@ -1,5 +1,6 @@
 #include "core/accel/kd_builder.h"
 
+#include "core/accel/kd_branch.h"
 #include "core/accel/kd_partition.h"
 #include "core/accel/parallel.h"
 
@@ -22,12 +23,6 @@ struct NodeTask {
     std::uint64_t nodes_left = KdNode::kMaxNodes - 1;  ///< That may stand below.
 };
 
-/// A tree of its own: nodes[0] is its root, indices count from its own beginning.
-struct Subtree {
-    std::vector<KdNode> nodes{KdNode()};
-    std::vector<std::uint32_t> references;
-};
-
 /// Leaves new elements as the memory was: they are written before they are read.
 struct UnsetAllocator : std::allocator<KdReference> {
     template <typename T>
@@ -42,25 +37,43 @@ struct UnsetAllocator : std::allocator<KdReference> {
 };
 using References = std::vector<KdReference, UnsetAllocator>;
 
-/// One inner node over two subtrees.
-Subtree join(int axis, float plane, Subtree&& below, Subtree&& above) {
-    Subtree tree = {{KdNode::inner(axis, plane, 1), KdNode(), KdNode()}, std::move(below.references)};
-    tree.nodes.reserve(below.nodes.size() + above.nodes.size() + 1);
-    const auto first_reference = static_cast<std::uint32_t>(tree.references.size());
-    tree.references.insert(tree.references.end(), above.references.begin(), above.references.end());
-    const auto append = [&](const Subtree& part, std::size_t root_slot, std::uint32_t reference_offset) {
-        // The root moves to its slot; node i >= 1 moves to the end.
-        const auto offset = static_cast<std::uint32_t>(tree.nodes.size()) - 1;
-        const auto moved = [&](const KdNode& node) {
-            return node.is_leaf() ? KdNode::leaf(node.first() + reference_offset, node.count())
-                                  : KdNode::inner(node.axis(), node.split(), node.children() + offset);
-        };
-        tree.nodes[root_slot] = moved(part.nodes[0]);
-        for (std::size_t i = 1; i < part.nodes.size(); ++i) tree.nodes.push_back(moved(part.nodes[i]));
+/// Of all primitives that fit a tree, in their order. `cell` becomes what bounds them.
+References all_references(std::span<const Bounds3> bounds, Bounds3& cell) {
+    constexpr std::size_t kPart = 1 << 14;
+    struct Part {
+        std::size_t first = 0;  ///< At first, how many it has.
+        Bounds3 bounds;
     };
-    append(below, 1, 0);
-    append(above, 2, first_reference);
-    return tree;
+    std::vector<Part> parts((bounds.size() + kPart - 1) / kPart);
+    const auto each_of = [&](std::size_t part, const auto& body) {
+        for (std::size_t i = part * kPart; i < std::min(bounds.size(), (part + 1) * kPart); ++i) {
+            if (fits_a_tree(bounds[i])) body(i);
+        }
+    };
+    const auto each_part = [&](const auto& body) {
+        parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t part = begin; part < end; ++part) body(part);
+        });
+    };
+    each_part([&](std::size_t part) {
+        Part counted;
+        each_of(part, [&](std::size_t i) {
+            ++counted.first;
+            counted.bounds.extend(bounds[i]);
+        });
+        parts[part] = counted;
+    });
+    std::size_t size = 0;
+    for (Part& part : parts) {
+        size += std::exchange(part.first, size);
+        cell.extend(part.bounds);
+    }
+    References references(size);
+    each_part([&](std::size_t part) {
+        std::size_t at = parts[part].first;
+        each_of(part, [&](std::size_t i) { references[at++] = {bounds[i], static_cast<std::uint32_t>(i), 1}; });
+    });
+    return references;
 }
 
 class Builder {
@@ -68,18 +81,18 @@ public:
     Builder(const KdBuildInput& input, BuildControl& control) : input_(input), control_(control) {}
 
     /// Large nodes: each half a task.
-    Subtree build_task(References references, const NodeTask& task) {
-        Subtree tree;
-        if (control_.cancelled) return tree;
+    KdBranch build_task(References references, const NodeTask& task) {
+        KdBranch branch;
+        if (control_.cancelled) return branch;
         if (references.size() <= kTaskReferences) {
             const std::size_t count = references.size();
-            build_node(tree, 0, references, 0, count, task);
-            return tree;
+            build_node(branch.tree, 0, references, 0, count, task);
+            return branch;
         }
         const auto cut = choose_cut(references, task);
         if (!cut) {
-            make_leaf(tree, 0, references);
-            return tree;
+            make_leaf(branch.tree, 0, references);
+            return branch;
         }
         References below(references.size());
         const KdPartCounts parts = partition(references, *cut, below.data());
@@ -87,17 +100,20 @@ public:
         below.resize(parts.below);
         references.resize(parts.above);
 
-        Subtree tree_below, tree_above;
-        fork_join([&, task_below = task_below] { tree_below = build_task(std::move(below), task_below); },
-                  [&, task_above = task_above] { tree_above = build_task(std::move(references), task_above); });
-        if (control_.cancelled) return tree;
-        return join(cut->axis, cut->plane, std::move(tree_below), std::move(tree_above));
+        branch.axis = cut->axis;
+        branch.plane = cut->plane;
+        const auto build_half = [&](References half, const NodeTask& of) {
+            return std::make_unique<const KdBranch>(build_task(std::move(half), of));
+        };
+        fork_join([&, task_below = task_below] { branch.below = build_half(std::move(below), task_below); },
+                  [&, task_above = task_above] { branch.above = build_half(std::move(references), task_above); });
+        return branch;
     }
 
 private:
     /// The node's references are the `count` from `begin`; they and what follows are overwritten. Children take turns on
     /// the same memory.
-    void build_node(Subtree& tree, std::uint32_t slot, References& memory, std::size_t begin, std::size_t count,
+    void build_node(KdSubtree& tree, std::uint32_t slot, References& memory, std::size_t begin, std::size_t count,
                     const NodeTask& task) {
         if (control_.cancelled) return;
         const auto cut = choose_cut(std::span(memory).subspan(begin, count), task);
@@ -116,7 +132,7 @@ private:
         build_node(tree, children + 1, memory, begin, parts.above, task_above);
     }
 
-    void make_leaf(Subtree& tree, std::uint32_t slot, std::span<const KdReference> references) {
+    void make_leaf(KdSubtree& tree, std::uint32_t slot, std::span<const KdReference> references) {
         std::uint64_t owned = 0;
         tree.nodes[slot] = KdNode::leaf(static_cast<std::uint32_t>(tree.references.size()),
                                         static_cast<std::uint32_t>(references.size()));
@@ -183,28 +199,18 @@ bool fits_a_tree(const Bounds3& bounds) {
 std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& control) {
     constexpr std::uint64_t kDuplicates = 8, kAlwaysAllowed = 1'000'000;
     NodeTask root;
-    References references;
-    references.reserve(input.bounds.size());
-    for (std::uint32_t i = 0; i < input.bounds.size(); ++i) {
-        const Bounds3& box = input.bounds[i];
-        if (!fits_a_tree(box)) continue;
-        references.push_back({box, i, 1});
-        root.cell.extend(box);
-    }
+    References references = all_references(input.bounds, root.cell);
     root.duplicates_left = std::max(kDuplicates * references.size(), kAlwaysAllowed);
     const std::uint64_t unusable = input.bounds.size() - references.size();
     control.done.fetch_add(unusable, std::memory_order_relaxed);
 
-    KdTree tree;
-    tree.bounds = root.cell;
-    Subtree built = Builder(input, control).build_task(std::move(references), root);
+    const KdBranch built = Builder(input, control).build_task(std::move(references), root);
     if (control.cancelled) return {};
-    tree.nodes = std::move(built.nodes);
-    for (KdNode& node : tree.nodes) {
-        if (node.is_leaf()) continue;
-        node.set_empty(tree.nodes[node.children()].is_empty_leaf(), tree.nodes[node.children() + 1].is_empty_leaf());
-    }
-    tree.references = std::move(built.references);
+    KdSubtree whole = assemble(built);
+    KdTree tree;
+    tree.nodes = std::move(whole.nodes);
+    tree.references = std::move(whole.references);
+    tree.bounds = root.cell;
     return tree;
 }
 

@@ -49,9 +49,9 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
                                        const BuildControl& control) {
     auto result = std::make_shared<MeshTree>();
     result->tree = std::move(tree);
-    result->leaf_data = make_leaf_data(*mesh, result->tree, control);
+    fork_join([&] { result->stats = result->tree.stats(); },
+              [&] { result->leaf_data = make_leaf_data(*mesh, result->tree, control); });
     if (control.cancelled) return nullptr;
-    result->stats = result->tree.stats();
     result->stats.primitives = mesh->triangles.size();
     result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
     result->mesh = mesh;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstring>
 #include <ctime>
 #include <functional>
@@ -217,6 +218,29 @@ TEST(KdBuilder, TreeDoesNotDependOnTheNumberOfThreads) {
         EXPECT_EQ(trees[0].references, trees[1].references);
         EXPECT_EQ(std::memcmp(trees[0].nodes.data(), trees[1].nodes.data(), trees[0].nodes.size() * sizeof(KdNode)), 0);
     }
+}
+
+/// 40,000 triangles are built by several tasks.
+TEST(KdBuilder, NodesOfAllTasksKnowTheirEmptyLeaves) {
+    const MeshPtr mesh = make_ball(100, 1, Vec3(0), 0.02f, 11);
+    const KdTree tree = build_tree(*mesh, KdSplit::sah, 4);
+    std::vector<int> parents(tree.nodes.size());
+    std::size_t empty = 0;
+    for (const KdNode& node : tree.nodes) {
+        if (node.is_leaf()) continue;
+        for (const std::uint32_t side : {0u, 1u}) {
+            ASSERT_LT(node.children() + side, tree.nodes.size());
+            const KdNode& child = tree.nodes[node.children() + side];
+            ASSERT_EQ(node.is_empty(side), child.is_empty_leaf());
+            empty += child.is_empty_leaf() ? 1 : 0;
+            ++parents[node.children() + side];
+        }
+    }
+    EXPECT_GT(empty, 0u);
+    EXPECT_EQ(parents[0], 0);
+    EXPECT_EQ(std::count(parents.begin() + 1, parents.end(), 1), static_cast<std::ptrdiff_t>(parents.size() - 1));
+    const std::set<std::uint32_t> referenced(tree.references.begin(), tree.references.end());
+    EXPECT_EQ(referenced.size(), mesh->triangles.size());
 }
 
 TEST(KdBuilder, CancelStopsSoon) {
