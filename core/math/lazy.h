@@ -18,12 +18,15 @@ public:
     explicit Lazy(Make make, std::uint64_t bytes = 0) : make_(std::move(make)), bytes_(bytes) {}
 
     std::shared_ptr<const T> get() const {
-        const std::lock_guard lock(mutex_);
-        std::shared_ptr<const T> made = made_.lock();
-        if (!made) made_ = made = make_();
+        const std::lock_guard lock(making_);
+        std::shared_ptr<const T> made = if_made();
+        if (made) return made;
+        made = make_();
+        const std::lock_guard writing(mutex_);
+        made_ = made;
         return made;
     }
-    /// Null where nobody holds it.
+    /// Null where nobody holds it. Does not wait for one who makes it.
     std::shared_ptr<const T> if_made() const {
         const std::lock_guard lock(mutex_);
         return made_.lock();
@@ -33,7 +36,8 @@ public:
 private:
     Make make_;
     std::uint64_t bytes_;
-    mutable std::mutex mutex_;
+    mutable std::mutex making_;
+    mutable std::mutex mutex_;  ///< Of made_, held but for a moment.
     mutable std::weak_ptr<const T> made_;
 };
 

@@ -42,8 +42,14 @@ bool read_as_scene(const std::string& bytes) {
 }
 bool read_as_image(const std::string& bytes) {
     const auto image = decode_image(std::as_bytes(std::span(bytes)), "stress", ColorDecoding::srgb);
-    if (!image) return has_causes(image.error());
-    return (*image)->pixels.size() == std::size_t((*image)->width) * std::size_t((*image)->height);
+    // Opened without being decoded it is the same image in the end, and what it lacks is known at once, but for a file
+    // that looks whole.
+    const auto opened = open_image(std::as_bytes(std::span(bytes)), "stress", ColorDecoding::srgb);
+    const bool later = opened && (*opened)->encoded;
+    if (!image) return has_causes(image.error()) && (later ? !with_pixels(*opened) : !opened);
+    if (!opened || with_pixels(*opened)->pixels.size() != (*image)->pixels.size()) return false;
+    return (*image)->pixels.size() == std::size_t((*image)->width) * std::size_t((*image)->height) &&
+           (*image)->width == (*opened)->width && (*image)->height == (*opened)->height;
 }
 
 struct Seed {

@@ -25,6 +25,16 @@ TEST(Lazy, IsMadeOnceWhileSomebodyHoldsIt) {
     EXPECT_EQ(*lazy.get(), 2);
 }
 
+TEST(Lazy, AskingWhetherItIsMadeDoesNotWait) {
+    const Lazy<int>* lazy = nullptr;
+    const Lazy<int> slow([&] {
+        std::jthread([&] { EXPECT_EQ(lazy->if_made(), nullptr); }).join();
+        return std::make_shared<const int>(1);
+    });
+    lazy = &slow;
+    EXPECT_EQ(*slow.get(), 1);
+}
+
 TEST(Lazy, WhatFailsIsTriedAgain) {
     int tried = 0;
     const Lazy<int> lazy([&] { return ++tried < 2 ? nullptr : std::make_shared<const int>(7); });
