@@ -319,8 +319,8 @@ Skip pixels_of_textures(const RenderScene& scene) {
     }
     return {.name = "Pixels of textures",
             .state = images.empty() ? SkipState::absent : skipped_if(encoded > 0),
-            .why = encoded > 0 ? fmt::format("{} of {} stay as the file has them: nothing visible shows them.", encoded,
-                                             count_of(images.size(), "image"))
+            .why = encoded > 0      ? fmt::format("Not decoded: {} of {}, which nothing visible shows.", encoded,
+                                                  count_of(images.size(), "image"))
                    : images.empty() ? "No material has an image."
                                     : "Visible objects show all images.",
             .saved = bytes,
