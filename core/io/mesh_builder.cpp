@@ -153,7 +153,12 @@ MeshResult finish_mesh(TriangleMesh mesh, const std::string& name, Problems* war
     for (Vec2& uv : mesh.uvs) {
         if (!is_finite(Vec3(uv, 0))) uv = Vec2(0);
     }
-    if (mesh.uvs.size() * sizeof(Vec2) >= kSmallestAside && (mesh.uvs_aside = put_aside(mesh.uvs))) mesh.uvs = {};
+    if (mesh.uvs.size() * sizeof(Vec2) >= kSmallestAside && (mesh.uvs_aside = put_aside(mesh.uvs))) mesh.uvs.clear();
+    // Readers do not know how much will come.
+    mesh.positions.shrink_to_fit();
+    mesh.normals.shrink_to_fit();
+    mesh.uvs.shrink_to_fit();
+    mesh.triangles.shrink_to_fit();
     return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 

@@ -285,7 +285,7 @@ TEST(ReadMesh, ManyTextureCoordinatesArePutAside) {
     const TriangleMesh& aside = **read;
     ASSERT_TRUE(aside.uvs_aside) << "no file could be had in /var/tmp nor in /tmp";
     EXPECT_TRUE(aside.has_uvs());
-    EXPECT_TRUE(aside.uvs.empty());
+    EXPECT_EQ(aside.uvs.capacity(), 0u);
     EXPECT_EQ(aside.bytes_aside(), mesh.uvs.size() * sizeof(Vec2));
     EXPECT_EQ(aside.memory_bytes() + aside.bytes_aside(), mesh.memory_bytes());
     {
@@ -308,6 +308,20 @@ TEST(ReadMesh, ManyTextureCoordinatesArePutAside) {
     mesh.triangles[0].z = 2;
     ASSERT_TRUE(write_mesh(folder.path / "c.ply", mesh));
     EXPECT_EQ((*read_mesh(folder.path / "c.ply"))->uvs, mesh.uvs) << "a file costs more than few would save";
+}
+
+TEST(ReadMesh, TakesNoMoreMemoryThanItHolds) {
+    const TempFolder folder;
+    const TriangleMesh mesh = random_mesh();
+    for (const char* name : {"a.ply", "a.obj"}) {
+        ASSERT_TRUE(write_mesh(folder.path / name, mesh));
+        const auto read = read_mesh(folder.path / name);
+        ASSERT_TRUE(read) << error_of(read);
+        const TriangleMesh& m = **read;
+        const std::uint64_t reserved = m.positions.capacity() * sizeof(Vec3) + m.normals.capacity() * sizeof(Vec3) +
+                                       m.uvs.capacity() * sizeof(Vec2) + m.triangles.capacity() * sizeof(glm::uvec3);
+        EXPECT_EQ(m.memory_bytes(), reserved) << name;
+    }
 }
 
 TEST(ReadMesh, UnknownAndMissingFiles) {
