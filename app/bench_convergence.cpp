@@ -4,6 +4,7 @@
 #include "app/subcommands.h"
 #include "core/io/image_io.h"
 #include "core/render/progressive_renderer.h"
+#include "core/scene/scene_edit.h"
 
 #include <fmt/format.h>
 
@@ -32,20 +33,33 @@ struct Reference {
     ReferencePair pair() const { return {a->pixels, b->pixels}; }
 };
 
-Result<Reference> read_reference(const ConvergencePlan& plan, const FilmSettings& film) {
+Result<Reference> read_reference(const ConvergencePlan& plan) {
     Reference reference;
     for (auto [file, image] :
          {std::pair(&plan.reference_a, &reference.a), std::pair(&plan.reference_b, &reference.b)}) {
         auto read = read_image(*file, ColorDecoding::linear);
         if (!read) return tl::unexpected(read.error());
         *image = std::move(*read);
-        const int width = (*image)->width, height = (*image)->height;
-        if (width != film.width || height != film.height) {
-            return fail(file->string(), "",
-                        fmt::format("is {} x {}, the scene's film is {} x {}", width, height, film.width, film.height));
-        }
+    }
+    const auto size = [](const Image& image) { return fmt::format("{} x {}", image.width, image.height); };
+    if (size(*reference.a) != size(*reference.b)) {
+        return fail(plan.reference_b.string(), "",
+                    fmt::format("is {}, the other half {}", size(*reference.b), size(*reference.a)));
     }
     return reference;
+}
+
+/// The film becomes as large as the reference, which has to show the same.
+Result<Scene> at_size_of(const Image& reference, const Scene& scene) {
+    FilmSettings film = scene.film;
+    if (std::int64_t{reference.width} * film.height != std::int64_t{reference.height} * film.width) {
+        return fail(reference.source, "",
+                    fmt::format("is {} x {}, which is not the shape of the scene's film of {} x {}", reference.width,
+                                reference.height, film.width, film.height));
+    }
+    film.width = reference.width;
+    film.height = reference.height;
+    return apply(scene, SetFilm{film});
 }
 
 /// Renders until every pixel has `spp` samples and adds what that took to `checkpoint`.
@@ -96,15 +110,17 @@ ConvergenceRun run_seed(const VariantScene& variant, std::uint32_t seed, const C
 
 Result<SceneConvergence> measure_convergence(const ConvergencePlan& plan, const Progress& progress) {
     const Stopwatch loading;
-    const auto scene = load_scene(plan.scene);
-    if (!scene) return tl::unexpected(scene.error());
+    const auto loaded = load_scene(plan.scene);
+    if (!loaded) return tl::unexpected(loaded.error());
     SceneConvergence result{.name = plan.scene.stem().stem().string(),
-                            .width = scene->film.width,
-                            .height = scene->film.height,
                             .load_cpu_seconds = loading.cpu(),
                             .load_wall_seconds = loading.wall()};
-    const auto reference = read_reference(plan, scene->film);
+    const auto reference = read_reference(plan);
     if (!reference) return tl::unexpected(reference.error());
+    const auto scene = at_size_of(*reference->a, *loaded);
+    if (!scene) return tl::unexpected(scene.error());
+    result.width = scene->film.width;
+    result.height = scene->film.height;
     result.reference_uncertainty = mean_ratio_uncertainty(reference->pair());
 
     std::vector<VariantScene> scenes;

@@ -121,6 +121,8 @@ void add_reference(CLI::App& app, ReferenceOptions& options) {
         ->delimiter(',')
         ->expected(2)
         ->required();
+    add_size(command, "Size of the images, which `bench convergence` will render at",
+             [&options](glm::ivec2 size) { options.size = size; });
     command.add_option("--spp", options.spp, "Samples a pixel of each half")->check(CLI::Range(1, 1 << 30));
     command.add_option("--set", options.set, "Change a setting, NAME=VALUE")->allow_extra_args(false);
     command.add_flag("--brute-force", options.brute_force, "Without acceleration structure and light sampling");

@@ -52,7 +52,7 @@ Result<void> run_reference(const ReferenceOptions& options) {
         if (auto writable = check_output(output); !writable) return writable;
         if (output.extension() == ".png") return fail(output.string(), "", "a reference is linear: .exr or .pfm");
     }
-    const auto scene = load_scene(options.scene);
+    const auto scene = load_scene(options.scene, {.size = options.size});
     if (!scene) return tl::unexpected(scene.error());
     for (std::uint32_t half = 0; half < 2; ++half) {
         const auto variant = apply_settings(*scene, settings_of(options, half));

@@ -3,6 +3,8 @@
 #include "core/math/result.h"
 
 #include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@ struct ReferenceOptions {
     std::filesystem::path scene;
     std::vector<std::filesystem::path> outputs;  ///< Of the two halves.
     std::vector<std::string> set;                ///< "name=value", as of `bench convergence`.
+    std::optional<glm::ivec2> size;              ///< Instead of the film's.
     bool brute_force = false;
     int spp = 4096;
     int threads = 0;

@@ -9,6 +9,7 @@ import sys
 import xml.etree.ElementTree
 
 rayuela = sys.argv[1]
+assets = pathlib.Path(__file__).parents[2] / "assets"
 SCENE = """{"rayuela": 1, "film": {"width": 24, "height": 16},
   "camera": {"position": [0, 1, 6], "target": [0, 1, 0], "vfov": 40},
   "environment": {"type": "constant", "radiance": [0.5, 0.6, 0.8]},
@@ -99,6 +100,30 @@ def test_mistakes_are_named():
     pathlib.Path("wide.scene.json").write_text(wide)
     message = run("bench", "convergence", "wide.scene.json", "--reference", "ball_a.pfm,ball_b.pfm", status=1).stderr
     assert "24 x 16" in message and "25 x 16" in message, message
+    run("reference", "ball.scene.json", "-o", "less_a.pfm,less_b.pfm", "--size", "12x8", "--spp", 1)
+    message = run("bench", "convergence", "ball.scene.json", "--reference", "ball_a.pfm,less_b.pfm", status=1).stderr
+    assert "24 x 16" in message and "12 x 8" in message, message
+
+
+def test_film_takes_the_size_of_the_reference():
+    run("reference", "ball.scene.json", "-o", "small_a.pfm,small_b.pfm", "--size", "12x8", "--spp", 256)
+    run("bench", "convergence", "ball.scene.json", "--reference", "small_a.pfm,small_b.pfm", "--seeds", 4, "--spp", 16,
+        "--json", "s.json")
+    scene = json.loads(pathlib.Path("s.json").read_text())[0]
+    assert (scene["width"], scene["height"]) == (12, 8), scene
+    last = scene["variants"][""]["checkpoints"][-1]
+    assert last["relmse"]["value"] < 0.01 and abs(last["mean_ratio"]["value"] - 1) < 0.05, last
+
+
+def test_examples_have_references():
+    names = {path.name.split("_a.")[0] for path in (assets / "references").glob("*_a.exr")}
+    assert len(names) >= 4, names
+    run("bench", "convergence", "--seeds", 2, "--spp", 2, "--json", "e.json")
+    scenes = json.loads(pathlib.Path("e.json").read_text())
+    assert {scene["scene"] for scene in scenes} == names, names
+    for scene in scenes:
+        first = scene["variants"][""]["checkpoints"][0]
+        assert abs(first["mean_ratio"]["value"] - 1) < 0.2 and 0 < first["relmse"]["value"] < 10, (scene["scene"], first)
 
 
 for test in [f for name, f in list(globals().items()) if name.startswith("test_")]:
