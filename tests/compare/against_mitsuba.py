@@ -2,10 +2,11 @@
 """Run time against error, Rayuela beside Mitsuba 3 in the same run, one thread each and in turns.
 
     python3 -m venv venv && venv/bin/pip install mitsuba numpy        # llvm_ad_rgb also wants libLLVM
-    venv/bin/python tests/compare/against_mitsuba.py RAYUELA SCENE REFERENCE_A REFERENCE_B [--spp N] [--rounds N] [--variant V]
+    venv/bin/python tests/compare/against_mitsuba.py RAYUELA SCENE [REFERENCE_A REFERENCE_B] [--spp N] [--rounds N] [--variant V]
 
-The references are two .pfm images of the scene made by `rayuela reference` or anybody else. CPU seconds are those of loading
-and rendering; Mitsuba's are given for its second render too, when its kernels are compiled.
+The references are two .exr or .pfm images of the scene made by `rayuela reference` or anybody else, and both render at their
+size; without them they are those of assets/references. CPU seconds are those of loading and rendering; Mitsuba's are given
+for its second render too, when its kernels are compiled.
 """
 
 import argparse
@@ -17,7 +18,16 @@ import sys
 import tempfile
 import time
 
+import mitsuba as mi
 import numpy as np
+
+KEPT = pathlib.Path(__file__).resolve().parents[2] / "assets" / "references"
+
+
+def read_reference(path):
+    if pathlib.Path(path).suffix == ".exr":
+        return np.array(mi.Bitmap(str(path)))[:, :, :3].astype(np.float64)
+    return read_pfm(path)
 
 
 def read_pfm(path):
@@ -39,7 +49,6 @@ def rel_mse(image, a, b):
 def render_mitsuba(arguments):
     """In a process of its own: prints the seconds of a first and a second render, and writes the second as .npy."""
     import drjit as dr
-    import mitsuba as mi
     mi.set_variant(arguments.variant)
     if "llvm" in arguments.variant:
         dr.set_thread_count(1)
@@ -49,6 +58,8 @@ def render_mitsuba(arguments):
             description = mitsuba_scene.convert(arguments.scene, pathlib.Path(scratch))
         except mitsuba_scene.Unsupported as problem:
             sys.exit(f"{arguments.scene}: {problem}")
+        height, width = read_reference(arguments.references[0]).shape[:2]
+        description["sensor"]["film"] |= {"width": width, "height": height}
         seconds = []
         start = time.process_time()
         scene = mi.load_dict(description)
@@ -73,9 +84,10 @@ def run_mitsuba(arguments, seed, folder):
 
 def run_rayuela(arguments, seed, folder):
     image, stats = folder / "rayuela.pfm", folder / "stats.json"
+    height, width = read_reference(arguments.references[0]).shape[:2]
     subprocess.run(["taskset", "-c", "0", arguments.rayuela, "render", arguments.scene, "-o", image, "--spp",
-                    str(arguments.spp), "--threads", "1", "--seed", str(seed), "--stats", stats], check=True,
-                   capture_output=True)
+                    str(arguments.spp), "--size", f"{width}x{height}", "--threads", "1", "--seed", str(seed), "--stats",
+                    stats], check=True, capture_output=True)
     return json.loads(stats.read_text())["cpu_seconds"], read_pfm(image)
 
 
@@ -83,17 +95,22 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rayuela")
     parser.add_argument("scene")
-    parser.add_argument("references", nargs=2)
+    parser.add_argument("references", nargs="*")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--variant", default="llvm_ad_rgb")
     parser.add_argument("--seed", type=int, default=0, help=argparse.SUPPRESS)
     parser.add_argument("--output", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if not arguments.references:
+        name = pathlib.Path(arguments.scene).name.split(".")[0]
+        arguments.references = [str(KEPT / f"{name}_{half}.exr") for half in "ab"]
+    if len(arguments.references) != 2 or not all(pathlib.Path(path).exists() for path in arguments.references):
+        parser.error(f"needs two references: {arguments.references}")
     if arguments.output:
         render_mitsuba(arguments)
         return
-    halves = [read_pfm(path) for path in arguments.references]
+    halves = [read_reference(path) for path in arguments.references]
     mean = (halves[0].mean() + halves[1].mean()) / 2
     rows = {"rayuela": [], f"mitsuba {arguments.variant}": [], "  its second render": []}
     names = list(rows)
