@@ -117,7 +117,7 @@ def test_film_takes_the_size_of_the_reference():
 
 def test_examples_have_references():
     names = {path.name.split("_a.")[0] for path in (assets / "references").glob("*_a.exr")}
-    assert len(names) >= 4, names
+    assert len(names) == 6, names
     run("bench", "convergence", "--seeds", 2, "--spp", 2, "--json", "e.json")
     scenes = json.loads(pathlib.Path("e.json").read_text())
     assert {scene["scene"] for scene in scenes} == names, names
