@@ -87,6 +87,7 @@ private:
     std::uint32_t parts_seed_;
     int rr_start_;
     bool light_sampling_;
+    float roulette_throughput_;  ///< Below it paths may be cut, but for those that caustics are left to.
     std::optional<LightTracer> light_tracer_;
 };
 

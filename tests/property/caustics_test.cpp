@@ -93,6 +93,17 @@ Scene scene_of(const Case& test) {
     return scene;
 }
 
+/// Of the whole images and of vertical bands of them, as far as chance allows.
+void expect_equal_means(const Film& left, const Film& right) {
+    constexpr int kBands = 8;
+    for (int band = -1; band < kBands; ++band) {
+        const double from = band < 0 ? 0 : band / double{kBands}, to = band < 0 ? 1 : (band + 1) / double{kBands};
+        const Estimate a = estimate(left, from, to), b = estimate(right, from, to);
+        EXPECT_LT(std::abs(a.mean - b.mean) / std::sqrt(a.variance + b.variance), 5)
+            << "band " << band << ": " << a.mean << " and " << b.mean;
+    }
+}
+
 class Caustics : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Caustics, LampPathsDoNotChangeTheExpectedImage) {
@@ -104,13 +115,18 @@ TEST_P(Caustics, LampPathsDoNotChangeTheExpectedImage) {
     EXPECT_EQ(with->film().rejected(), (std::array<std::uint64_t, kRejectionCount>{}));
     EXPECT_GT(with->film().rounds(), 0u);
     EXPECT_EQ(without->film().rounds(), 0u);
-    constexpr int kBands = 8;
-    for (int band = -1; band < kBands; ++band) {
-        const double from = band < 0 ? 0 : band / double{kBands}, to = band < 0 ? 1 : (band + 1) / double{kBands};
-        const Estimate a = estimate(with->film(), from, to), b = estimate(without->film(), from, to);
-        EXPECT_LT(std::abs(a.mean - b.mean) / std::sqrt(a.variance + b.variance), 5)
-            << "band " << band << ": " << a.mean << " and " << b.mean;
-    }
+    expect_equal_means(with->film(), without->film());
+}
+
+/// Of dark things, so that paths are cut at every bounce from the first.
+TEST_P(Caustics, RouletteDoesNotChangeTheExpectedImage) {
+    Scene scene = scene_of(GetParam());
+    std::get<Diffuse>(scene.materials[0].material).albedo.value = Color(0.05f, 0.1f, 0.2f);
+    scene.render.rr_start = 1;
+    const auto with = render(scene, 300);
+    scene.render.seed = 1;
+    const auto without = render(scene, 300, {.russian_roulette = false});
+    expect_equal_means(with->film(), without->film());
 }
 
 TEST_P(Caustics, ThreadsAndPassesDoNotChangeTheImage) {

@@ -79,6 +79,38 @@ TEST(Enclosure, CavityAroundABallHasTheRadianceOfItsSeries) {
     }
 }
 
+const PathTracerOptions kRouletteCases[] = {{}, {.light_sampling = false}, {.shortcuts = {.matte_blocks = false}}};
+
+/// The same, cut from the first scattering on: what light samples leave to find, and all of the light.
+TEST(Roulette, KeepsTheMeanOfADarkCavity) {
+    constexpr double kAlbedo = 0.05, kF = 0.25, kL = 5;
+    for (const PathTracerOptions& options : kRouletteCases) {
+        Scene scene = empty_scene(32, 32);
+        scene.render.sampler = SamplerKind::independent;
+        scene.render.max_bounces = 200;
+        scene.render.rr_start = 1;
+        look_at(scene, Vec3(0, 0, -1.5f), Vec3(0, 0, -2), 60);
+        const MaterialId wall = add_material(scene, Diffuse{{Color(static_cast<float>(kAlbedo)), nullptr}});
+        const MaterialId lamp = add_material(scene, Emitter{.radiance = {Color(static_cast<float>(kL)), nullptr}});
+        add_object(scene, Sphere{Vec3(0), 2}, wall);
+        add_object(scene, Sphere{Vec3(0), 1}, lamp);
+        expect_mean(render(scene, 128, options)->film(), kAlbedo * kL * kF / (1 - kAlbedo * (1 - kF)));
+    }
+}
+
+/// A dark ball under a sky shows its albedo times the sky.
+TEST(Roulette, KeepsTheMeanOfADarkBall) {
+    for (const PathTracerOptions& options : kRouletteCases) {
+        Scene scene = empty_scene(32, 32);
+        scene.render.sampler = SamplerKind::independent;
+        scene.render.rr_start = 1;
+        scene.environment = ConstantEnvironment{Color(2)};
+        look_at(scene, Vec3(0, 0, 5), Vec3(0));
+        add_object(scene, Sphere{Vec3(0), 1}, add_material(scene, Diffuse{{Color(0.05f), nullptr}}));
+        expect_mean(render(scene, 128, options)->film(), 0.1);
+    }
+}
+
 /// The inside of a two-sided emissive sphere lights a white floor point like a constant environment.
 TEST(Enclosure, EmissiveSphereFromInsideIsAnEnvironment) {
     for (const PathTracerOptions& options : {PathTracerOptions{}, kScatteringOnly}) {
