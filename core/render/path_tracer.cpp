@@ -316,8 +316,7 @@ void PathTracer::scatter(PathBatch& batch, const PathState& state, const Ray& ra
     const float reach = max_component(throughput);
     if (!(reach > 0)) return;
     // Delta lobes are spared by bounces instead.
-    const float limit =
-        aims(state, bounce) && !sample->specular ? kRouletteThroughputToCaustics : roulette_throughput_;
+    const float limit = aims(state, bounce) && !sample->specular ? kRouletteThroughputToCaustics : roulette_throughput_;
     if (bounce + 1 >= roulette_start(sample->specular) && reach < limit) {
         const float survival = reach / limit;
         if (batch.samplers[state.part].get_1d(dimension(bounce, kRoulette)) >= survival) return;
