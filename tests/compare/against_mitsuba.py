@@ -58,8 +58,8 @@ def render_mitsuba(arguments):
             description = mitsuba_scene.convert(arguments.scene, pathlib.Path(scratch))
         except mitsuba_scene.Unsupported as problem:
             sys.exit(f"{arguments.scene}: {problem}")
-        height, width = read_reference(arguments.references[0]).shape[:2]
-        description["sensor"]["film"] |= {"width": width, "height": height}
+        width, height = arguments.size.split("x")
+        description["sensor"]["film"] |= {"width": int(width), "height": int(height)}
         seconds = []
         start = time.process_time()
         scene = mi.load_dict(description)
@@ -75,7 +75,8 @@ def render_mitsuba(arguments):
 def run_mitsuba(arguments, seed, folder):
     output = folder / "mitsuba.npy"
     command = [sys.executable, __file__, arguments.rayuela, arguments.scene, *arguments.references, "--spp",
-               str(arguments.spp), "--variant", arguments.variant, "--seed", str(seed), "--output", str(output)]
+               str(arguments.spp), "--size", arguments.size, "--variant", arguments.variant, "--seed", str(seed), "--output",
+               str(output)]
     done = subprocess.run(["taskset", "-c", "0", *command], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(done.stderr.strip())
@@ -84,9 +85,8 @@ def run_mitsuba(arguments, seed, folder):
 
 def run_rayuela(arguments, seed, folder):
     image, stats = folder / "rayuela.pfm", folder / "stats.json"
-    height, width = read_reference(arguments.references[0]).shape[:2]
     subprocess.run(["taskset", "-c", "0", arguments.rayuela, "render", arguments.scene, "-o", image, "--spp",
-                    str(arguments.spp), "--size", f"{width}x{height}", "--threads", "1", "--seed", str(seed), "--stats",
+                    str(arguments.spp), "--size", arguments.size, "--threads", "1", "--seed", str(seed), "--stats",
                     stats], check=True, capture_output=True)
     return json.loads(stats.read_text())["cpu_seconds"], read_pfm(image)
 
@@ -101,6 +101,7 @@ def main():
     parser.add_argument("--variant", default="llvm_ad_rgb")
     parser.add_argument("--seed", type=int, default=0, help=argparse.SUPPRESS)
     parser.add_argument("--output", help=argparse.SUPPRESS)
+    parser.add_argument("--size", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if not arguments.references:
         name = pathlib.Path(arguments.scene).name.split(".")[0]
@@ -111,6 +112,8 @@ def main():
         render_mitsuba(arguments)
         return
     halves = [read_reference(path) for path in arguments.references]
+    height, width = halves[0].shape[:2]
+    arguments.size = f"{width}x{height}"
     mean = (halves[0].mean() + halves[1].mean()) / 2
     rows = {"rayuela": [], f"mitsuba {arguments.variant}": [], "  its second render": []}
     names = list(rows)
