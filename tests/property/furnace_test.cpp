@@ -79,7 +79,7 @@ TEST(Enclosure, CavityAroundABallHasTheRadianceOfItsSeries) {
     }
 }
 
-const PathTracerOptions kRouletteCases[] = {{}, {.light_sampling = false}, {.shortcuts = {.matte_blocks = false}}};
+const PathTracerOptions kRouletteCases[] = {{}, {.light_sampling = false}, {.shortcuts = {.lobe_blocks = false}}};
 
 /// The same, cut from the first scattering on: what light samples leave to find, and all of the light.
 TEST(Roulette, KeepsTheMeanOfADarkCavity) {
