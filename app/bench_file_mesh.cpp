@@ -80,7 +80,7 @@ Result<BenchMesh> read_bench_mesh(const std::filesystem::path& file) {
     return BenchMesh{
         .name = file.filename().string(),
         .description = left_out == 0 ? "from a file" : fmt::format("without {} spheres and planes", left_out),
-        .make = [mesh] { return mesh; },
+        .make = [made = mesh] { return made; },
         .eye = camera.position,
         .target = camera.target,
         .field_of_view = camera.vfov,

@@ -3,7 +3,6 @@
 #include "core/accel/parallel.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace rayuela {
 namespace {
@@ -58,7 +57,8 @@ KdSubtree assemble(const KdBranch& root) {
     parallel_ranges(layout.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) layout.pieces[i].copy_to(whole);
     });
-    for (auto [slot, node] : std::views::reverse(layout.inner)) {  // What lies below is there first.
+    std::ranges::reverse(layout.inner);  // What lies below is there first.
+    for (auto [slot, node] : layout.inner) {
         const KdNode* const children = &whole.nodes[node.children()];
         node.set_empty(children[0].is_empty_leaf(), children[1].is_empty_leaf());
         whole.nodes[slot] = node;
