@@ -4,6 +4,7 @@
 #include "core/math/sampling.h"
 #include "core/render/aimed_bsdf.h"
 #include "core/render/interaction.h"
+#include "core/render/path_dimensions.h"
 
 #include <algorithm>
 #include <climits>
@@ -12,27 +13,6 @@
 namespace rayuela {
 
 namespace {
-
-/// What a dimension of the sampler decides, as numbers within a set of four: those of a set are stratified together, the
-/// first two best. Set 0 is the camera's and set b + 1 that of bounce b, but light samples belong to the direction that
-/// leads to them, and those of the first hit to the position in the image.
-enum CameraDimension : std::uint32_t { kFilter, kFirstLight, kLens };
-enum BounceDimension : std::uint32_t { kDirection, kNextLight, kLobe, kRoulette };
-
-std::uint32_t dimension(int bounce, BounceDimension purpose) {
-    return (static_cast<std::uint32_t>(bounce) + 1) * kSobolPairs + purpose;
-}
-
-std::uint32_t light_dimension(int bounce) {
-    return bounce == 0 ? std::uint32_t{kFirstLight} : dimension(bounce - 1, kNextLight);
-}
-
-/// Without light samples directions take their places.
-std::uint32_t direction_dimension(int bounce, bool light_sampling) {
-    if (light_sampling) return dimension(bounce, kDirection);
-    const auto ordinal = static_cast<std::uint32_t>(bounce) + 1;  // The position in the image is number 0.
-    return ordinal / 2 * kSobolPairs + ordinal % 2;
-}
 
 /// First bounce that Russian roulette may cut where the scene leaves it to the renderer.
 constexpr int kDefaultRouletteStart = 2;
@@ -350,20 +330,6 @@ float PathTracer::light_ratio(const PathState& state, const Ray& ray, const Inte
 int PathTracer::roulette_start(bool specular) const {
     if (!options_.russian_roulette) return INT_MAX;
     return rr_start_ + (specular ? kSparedSpecularBounces : 0);
-}
-
-LobeTask PathTracer::lobe_task(SingleLobe::Kind kind, int bounce) const {
-    const bool roulette = bounce + 1 >= roulette_start(is_delta(kind));
-    return {.kind = kind,
-            .sampler = scene_.scene().render.sampler,
-            .light_dimension = light_dimension(bounce),
-            .lobe_dimension = dimension(bounce, kLobe),
-            .direction_dimension = direction_dimension(bounce, light_sampling_),
-            .roulette_dimension = dimension(bounce, kRoulette),
-            .samples_lights = light_sampling_ && !is_delta(kind),
-            .mis = options_.mis,
-            .black_shadow_rays = !options_.shortcuts.black_shadow_rays,
-            .roulette_throughput = roulette ? roulette_throughput_ : 0};
 }
 
 void PathTracer::add_unblocked_light(PathBatch& batch) const {

@@ -1,4 +1,5 @@
 #include "core/render/interaction.h"
+#include "core/render/path_dimensions.h"
 #include "core/render/path_tracer.h"
 
 #include <bit>
@@ -68,6 +69,20 @@ void PathTracer::shade_block(PathBatch& batch, SingleLobe::Kind kind, int bounce
         batch.next_rays.push_back({.origin = vec(block.next_origin, i), .direction = vec(block.next_direction, i)});
     }
     block.size = 0;
+}
+
+LobeTask PathTracer::lobe_task(SingleLobe::Kind kind, int bounce) const {
+    const bool roulette = bounce + 1 >= roulette_start(is_delta(kind));
+    return {.kind = kind,
+            .sampler = scene_.scene().render.sampler,
+            .light_dimension = light_dimension(bounce),
+            .lobe_dimension = dimension(bounce, kLobe),
+            .direction_dimension = direction_dimension(bounce, light_sampling_),
+            .roulette_dimension = dimension(bounce, kRoulette),
+            .samples_lights = light_sampling_ && !is_delta(kind),
+            .mis = options_.mis,
+            .black_shadow_rays = !options_.shortcuts.black_shadow_rays,
+            .roulette_throughput = roulette ? roulette_throughput_ : 0};
 }
 
 }  // namespace rayuela
