@@ -221,6 +221,8 @@ private:
     template <typename View>
     static HWY_INLINE void sample_view(const View& view, const Vec3Lanes (&corners)[4], const Vec3Lanes& n,
                                        FloatMask here, Position& position) {
+        // What follows says nothing, and may be NaN, of lanes that are not here.
+        if (hn::AllFalse(FloatTag(), here)) return;
         Floats closeness[4];
         view.closeness(closeness);
         const CornerWarpLanes warp = cosine_warp(corners, closeness, n);
