@@ -8,28 +8,15 @@
 #include <hwy/highway.h>
 
 #include "core/lights/corner_warp-inl.h"
+#include "core/lights/light_block_lanes-inl.h"
 #include "core/lights/light_importance-inl.h"
 #include "core/lights/rectangle_view-inl.h"
 #include "core/lights/triangle_view-inl.h"
+#include "core/math/double_lanes-inl.h"
 #include "core/math/float_error.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
-
-using DoubleTag = hn::CappedTag<double, 8>;
-using Doubles = hn::Vec<DoubleTag>;
-using HalfFloatTag = hn::Rebind<float, DoubleTag>;
-
-HWY_INLINE Vec3Lanes load(const LightBlock::Rows& rows, std::size_t i) {
-    const FloatTag d;
-    return {hn::Load(d, rows[0] + i), hn::Load(d, rows[1] + i), hn::Load(d, rows[2] + i)};
-}
-HWY_INLINE void store(const Vec3Lanes& v, LightBlock::Rows& rows, std::size_t i) {
-    const FloatTag d;
-    hn::Store(v.x, d, rows[0] + i);
-    hn::Store(v.y, d, rows[1] + i);
-    hn::Store(v.z, d, rows[2] + i);
-}
 
 /// One lamp in all lanes.
 HWY_INLINE ClusterLanes cluster_of(const LightClusters& clusters, std::size_t k) {
@@ -88,7 +75,7 @@ struct ConeLanes {
 HWY_INLINE ConeLanes cone_of(const Vec3Lanes& origin, Floats size, const Vec3Lanes& p) {
     const FloatTag d;
     const DoubleTag dd;
-    const HalfFloatTag df;
+    const hn::Rebind<float, DoubleTag> df;
     alignas(64) float o[3][kLanes], from[3][kLanes], r[kLanes], axis[3][kLanes], distance[kLanes], cosine[kLanes];
     alignas(64) float inside[kLanes];
     const Floats origins[3] = {origin.x, origin.y, origin.z}, points[3] = {p.x, p.y, p.z};

@@ -7,27 +7,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/lights/light_block_lanes-inl.h"
 #include "core/materials/single_lobe_lanes-inl.h"
 #include "core/math/float_error.h"
 #include "core/math/sampler_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
-
-HWY_INLINE Floats load(const LobeBlock::Row& row, std::size_t i) {
-    return hn::Load(FloatTag(), row + i);
-}
-HWY_INLINE Vec3Lanes load(const LobeBlock::Rows& rows, std::size_t i) {
-    return {load(rows[0], i), load(rows[1], i), load(rows[2], i)};
-}
-HWY_INLINE void store(Floats x, LobeBlock::Row& row, std::size_t i) {
-    hn::Store(x, FloatTag(), row + i);
-}
-HWY_INLINE void store(const Vec3Lanes& v, LobeBlock::Rows& rows, std::size_t i) {
-    store(v.x, rows[0], i);
-    store(v.y, rows[1], i);
-    store(v.z, rows[2], i);
-}
 
 HWY_INLINE SamplerLanes samplers(const LobeTask& task, const LobeBlock& block, std::size_t i) {
     return {task.sampler, block.key_0 + i, block.key_1 + i, block.reversed_index + i};
