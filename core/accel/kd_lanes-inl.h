@@ -68,7 +68,7 @@ public:
         const FloatTag d;
         const WordTag dw;
         const Words node = hn::Load(dw, node_);
-        const WordPairs pair = gather_pairs(reinterpret_cast<const std::uint64_t*>(nodes), node);
+        const WordPairs pair = gather_pairs(reinterpret_cast<const std::uint64_t*>(nodes), node_);
         const Floats plane = hn::BitCast(d, pair.low);
         const Words axis = hn::And(pair.high, hn::Set(dw, KdNode::kAxisMask));
         const AxisChoice choice(axis);
@@ -96,7 +96,7 @@ public:
 
         // What is written for the other lanes lies above the top of their stacks.
         const Words height = hn::Load(dw, height_);
-        scatter_pairs({hn::Or(hn::ShiftLeft<2>(far), axis), hn::BitCast(dw, end)}, stack_, height);
+        scatter_pairs({hn::Or(hn::ShiftLeft<2>(far), axis), hn::BitCast(dw, end)}, stack_, height_);
         const auto pushed = hn::RebindMask(dw, both);
         hn::Store(hn::Add(height, hn::IfThenElseZero(pushed, hn::Set(dw, kLanes))), dw, height_);
         const Words next = hn::IfThenElse(hn::RebindMask(dw, only_far), far, near);
@@ -136,7 +136,8 @@ public:
             if (hn::AllFalse(d, todo)) break;
             const auto popped = hn::RebindMask(dw, todo);
             height = hn::IfThenElse(popped, hn::Sub(height, hn::Set(dw, kLanes)), height);
-            const WordPairs entry = gather_pairs(stack_, height);
+            hn::Store(height, dw, height_);
+            const WordPairs entry = gather_pairs(stack_, height_);
             // The far child begins where the near one ended, less both pads and their rounding.
             const Floats pad = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(pad_);
             begin = hn::IfThenElse(todo, hn::NegMulAdd(pad, hn::Set(d, 2.25f), end), begin);
@@ -145,7 +146,6 @@ public:
             todo = hn::And(todo, hn::Gt(begin, limit));
         }
         hn::Store(node, dw, node_);
-        hn::Store(height, dw, height_);
         hn::Store(begin, d, begin_);
         hn::Store(end, d, end_);
     }

@@ -15,11 +15,12 @@ namespace rayuela::HWY_NAMESPACE {
 template <Query kQuery>
 HWY_INLINE void sweep_triangles(const MeshTree& mesh, std::uint32_t object, const RayBlock& block,
                                 std::span<const Ray> rays, std::span<Hit> hits) {
-    constexpr std::size_t kPart = 512;  // Triangles that stay in the first cache while all rays pass them.
-    const std::size_t n = mesh.tree.references.size();
+    constexpr std::size_t kPart = 8192;  // Floats of blocks that stay in the first cache while all rays pass them.
+    const float* const data = mesh.leaf_data.data();
+    const std::size_t size = mesh.leaf_data.size() - kRunPadding;
     TrianglePacket packet(block, rays);
-    for (std::size_t begin = 0; begin < n; begin += kPart) {
-        const std::size_t end = std::min(begin + kPart, n);
+    for (std::size_t begin = 0, end = 0; begin < size; begin = end) {
+        while (end < size && end - begin < kPart) end += LeafBlock(data + end).size();
         for (std::size_t first = 0; first < block.size; first += kLanes) {
             LaneBits lanes = 0;
             for (std::size_t lane = 0; lane < std::min(kLanes, block.size - first); ++lane) {
@@ -28,10 +29,13 @@ HWY_INLINE void sweep_triangles(const MeshTree& mesh, std::uint32_t object, cons
             }
             if (lanes == 0) continue;
             packet.start(first, lanes, hits);
-            packet.test(mesh.leaf_data.data(), n, begin, end, mask_of(lanes),
-                        [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
-                            keep_closer(hit, object, mesh.tree.references[i], hits[block.id[first + lane]]);
-                        });
+            for (std::size_t at = begin; at < end; at += LeafBlock(data + at).size()) {
+                const LeafBlock triangles(data + at);
+                const std::uint32_t* const names = mesh.tree.references.data() + triangles.first_name();
+                packet.test(triangles, mask_of(lanes),
+                            [&](std::size_t lane, std::size_t i, const ShapeHit& hit)
+                                HWY_ATTR { keep_closer(hit, object, names[i], hits[block.id[first + lane]]); });
+            }
         }
     }
 }

@@ -22,23 +22,40 @@ std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildContro
     return bounds;
 }
 
-void write_leaf(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, float* runs) {
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const glm::uvec3& t = mesh.triangles[triangles[i]];
-        write_triangle({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, i, triangles.size(), runs);
+/// Writes the blocks of all leaves, which from then on begin where KdNode::first says.
+std::vector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const BuildControl& control) {
+    constexpr std::size_t kPart = 4096;
+    struct Part {
+        std::vector<float> data;
+        std::size_t begin = 0;
+    };
+    std::vector<Part> parts((tree.nodes.size() + kPart - 1) / kPart);
+    const auto each_leaf = [&](std::size_t part, const auto& visit) {
+        for (std::size_t i = part * kPart; i < std::min((part + 1) * kPart, tree.nodes.size()); ++i) {
+            if (tree.nodes[i].is_leaf() && tree.nodes[i].count() > 0) visit(tree.nodes[i]);
+        }
+    };
+    parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end && !control.cancelled; ++i) {
+            each_leaf(i, [&](KdNode& leaf) {
+                const std::uint32_t first = leaf.first();
+                leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].data.size()), leaf.count());
+                append_leaf_blocks(mesh, std::span(tree.references).subspan(first, leaf.count()), first, parts[i].data);
+            });
+        }
+    });
+    std::size_t size = 0;
+    for (Part& part : parts) {
+        part.begin = size;
+        size += part.data.size();
     }
-}
-
-std::vector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, const BuildControl& control) {
-    const std::size_t size = kTriangleRuns * tree.references.size();
     std::vector<float> data(size + kRunPadding);
-    parallel_ranges(tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        if (control.cancelled) return;
+    parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const KdNode& node = tree.nodes[i];
-            if (!node.is_leaf() || node.count() == 0) continue;
-            write_leaf(mesh, std::span(tree.references).subspan(node.first(), node.count()),
-                       data.data() + kTriangleRuns * node.first());
+            std::ranges::copy(parts[i].data, data.begin() + static_cast<std::ptrdiff_t>(parts[i].begin));
+            each_leaf(i, [&](KdNode& leaf) {
+                leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].begin + leaf.first()), leaf.count());
+            });
         }
     });
     return data;
@@ -49,11 +66,11 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
                                        const BuildControl& control) {
     auto result = std::make_shared<MeshTree>();
     result->tree = std::move(tree);
-    fork_join([&] { result->stats = result->tree.stats(); },
-              [&] { result->leaf_data = make_leaf_data(*mesh, result->tree, control); });
+    result->leaf_data = place_leaves(*mesh, result->tree, control);
     if (control.cancelled) return nullptr;
+    result->stats = result->tree.stats();
     result->stats.primitives = mesh->triangles.size();
-    result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
+    result->stats.memory_bytes += result->leaf_data.size() * sizeof(float);
     result->mesh = mesh;
     return result;
 }

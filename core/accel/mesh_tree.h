@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/accel/kd_builder.h"
+#include "core/accel/leaf_blocks.h"
 
 #include <memory>
 
@@ -10,10 +11,15 @@ namespace rayuela {
 /// SIMD wants them. Immutable. Does not keep the mesh.
 struct MeshTree {
     std::weak_ptr<const TriangleMesh> mesh;
-    KdTree tree;
-    /// The runs (triangle_runs.h) of a leaf with references from `first` begin at kTriangleRuns * first.
-    std::vector<float> leaf_data;
+    KdTree tree;                   ///< KdNode::first of a leaf: where its blocks begin.
+    std::vector<float> leaf_data;  ///< Blocks (leaf_blocks.h), and kRunPadding floats that kernels may read too far.
     AccelStats stats;
+
+    LeafBlock first_block(const KdNode& leaf) const { return LeafBlock(leaf_data.data() + leaf.first()); }
+    /// The triangles of a leaf; it must not be empty.
+    std::span<const std::uint32_t> references(const KdNode& leaf) const {
+        return std::span(tree.references).subspan(first_block(leaf).first_name(), leaf.count());
+    }
 };
 
 /// All triangles in one leaf, for those who test them in turn.

@@ -55,23 +55,30 @@ public:
     }
 
     HWY_INLINE void prefetch(const LeafVisit& leaf) const {
-        const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first;
-        for (std::size_t i = 0; i < kTriangleRuns * leaf.count; i += 16) hwy::Prefetch(runs + i);
+        // As many vertices as triangles: what leaves mostly have.
+        const float* const block = mesh_.leaf_data.data() + leaf.first;
+        for (std::size_t i = 0; i < LeafBlock::kHeader + 4 * leaf.count; i += 16) hwy::Prefetch(block + i);
     }
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
+        closer_ = 0;
         for (const LeafVisit& visit : visits) {
-            const std::size_t n = visit.count, first = visit.first;
-            const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * first;
-            const std::uint32_t* const names = mesh_.tree.references.data() + first;
-            for (std::size_t i = 0; i < n; i += kLanes) {
-                if (triangles_.add(visit.slot, runs, n, i, names, 0)) decide();
+            const float* data = mesh_.leaf_data.data() + visit.first;
+            for (std::size_t left = visit.count; left > 0;) {
+                const LeafBlock block(data);
+                const std::uint32_t* const names = mesh_.tree.references.data() + block.first_name();
+                for (std::size_t i = 0; i < block.triangles(); i += kLanes) {
+                    if (triangles_.add(visit.slot, block, i, names)) decide();
+                }
+                data += block.size();
+                left -= block.triangles();
             }
         }
         decide();
-        for (const LeafVisit& visit : visits) {
-            go_on<kQuery>(visit.slot, triangles_.ray(visit.slot), block_, rays_, hits_, slots,
+        for (; closer_ != 0; closer_ &= closer_ - 1) {
+            const auto closer = static_cast<std::size_t>(std::countr_zero(closer_));
+            go_on<kQuery>(closer, triangles_.ray(closer), block_, rays_, hits_, slots,
                           [&](std::size_t slot, float end) HWY_ATTR { triangles_.set_end(slot, end); });
         }
     }
@@ -81,14 +88,13 @@ public:
         packet_.start(first, lanes, hits_);
     }
     HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
-        const float* const runs = mesh_.leaf_data.data() + kTriangleRuns * leaf.first();
-        const std::uint32_t* const names = mesh_.tree.references.data() + leaf.first();
         LaneBits closer = 0;
-        packet_.test(runs, leaf.count(), mask_of(lanes),
-                     [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
-                         keep_closer(hit, object_, names[i], hits_[block_.id[first_ + lane]]);
-                         closer |= LaneBits{1} << lane;
-                     });
+        each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block, const std::uint32_t* names) HWY_ATTR {
+            packet_.test(block, mask_of(lanes), [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
+                keep_closer(hit, object_, names[i], hits_[block_.id[first_ + lane]]);
+                closer |= LaneBits{1} << lane;
+            });
+        });
         for (; closer != 0; closer &= closer - 1) {
             go_on<kQuery>(first_lane(closer), first_ + first_lane(closer), block_, rays_, hits_, packet,
                           [&](std::size_t lane, float end) HWY_ATTR { packet_.set_end(lane, end); });
@@ -96,9 +102,22 @@ public:
     }
 
 private:
+    /// visit(block, names) for the blocks of `count` triangles that begin at `first`.
+    template <typename Visit>
+    HWY_INLINE void each_block(std::size_t first, std::size_t count, const Visit& visit) const {
+        while (count > 0) {
+            const LeafBlock block(mesh_.leaf_data.data() + first);
+            visit(block, mesh_.tree.references.data() + block.first_name());
+            first += block.size();
+            count -= block.triangles();
+        }
+    }
+
     HWY_INLINE void decide() {
-        triangles_.decide([&](std::uint32_t i, std::uint32_t triangle, const ShapeHit& hit)
-                              HWY_ATTR { keep_closer(hit, object_, triangle, hits_[block_.id[i]]); });
+        triangles_.decide([&](std::uint32_t slot, std::uint32_t triangle, const ShapeHit& hit) HWY_ATTR {
+            keep_closer(hit, object_, triangle, hits_[block_.id[triangles_.ray(slot)]]);
+            closer_ |= std::uint64_t{1} << slot;
+        });
     }
 
     const MeshTree& mesh_;
@@ -108,7 +127,8 @@ private:
     std::span<Hit> hits_;
     TriangleLanes triangles_;
     TrianglePacket packet_;
-    std::size_t first_ = 0;  ///< Ray of the packet.
+    std::uint64_t closer_ = 0;  ///< Slots whose rays have come upon a hit.
+    std::size_t first_ = 0;     ///< Ray of the packet.
 };
 
 /// Makes the hit with a triangle of a leaf over objects the best one if it comes before it.
@@ -205,7 +225,7 @@ private:
     HWY_INLINE void add_triangles(std::size_t slot, const ObjectLeaf& leaf) {
         const float* const runs = leaves_.triangle_runs.data() + kTriangleRuns * leaf.first_triangle;
         for (std::size_t i = 0; i < leaf.triangles; i += kLanes) {
-            if (triangles_.add(slot, runs, leaf.triangles, i, nullptr, leaf.first_triangle)) decide_triangles();
+            if (triangles_.add(slot, runs, leaf.triangles, i, leaf.first_triangle)) decide_triangles();
         }
     }
 
@@ -218,8 +238,9 @@ private:
     }
 
     HWY_INLINE void decide_triangles() {
-        triangles_.decide([&](std::uint32_t i, std::uint32_t name, const ShapeHit& hit)
-                              HWY_ATTR { keep_triangle(leaves_.triangles[name], hit, hits_[block_.id[i]]); });
+        triangles_.decide([&](std::uint32_t slot, std::uint32_t name, const ShapeHit& hit) HWY_ATTR {
+            keep_triangle(leaves_.triangles[name], hit, hits_[block_.id[triangles_.ray(slot)]]);
+        });
     }
 
     HWY_INLINE void decide_spheres() {

@@ -55,6 +55,7 @@ struct RayBlock {
     alignas(64) std::uint32_t dominant_axis[kRoom];
     alignas(64) double turned_origin[3][kRoom];
     alignas(64) double shear_x[kRoom], shear_y[kRoom], inverse_z[kRoom];
+    alignas(64) float depth[kRoom];  ///< Of the direction along z, with its sign.
 };
 
 struct DoubleVec3 {
@@ -94,7 +95,6 @@ public:
 private:
     using HalfFloatTag = hn::Rebind<float, DoubleTag>;
     using HalfWordTag = hn::Rebind<std::uint32_t, DoubleTag>;
-    using HalfIndexTag = hn::Rebind<std::int32_t, DoubleTag>;
     using HalfFloats = hn::Vec<HalfFloatTag>;
     static constexpr std::size_t kStep = hn::MaxLanes(DoubleTag());
     /// Relative.
@@ -104,13 +104,11 @@ private:
         static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float));
         const DoubleTag dd;
         const HalfFloatTag df;
-        const HalfIndexTag di;
-        const auto id = hn::BitCast(di, hn::LoadU(HalfWordTag(), block.id + i));
-        const auto field = [&](int offset)
-                               HWY_ATTR { return hn::GatherIndex(df, rays_ + offset, hn::ShiftLeft<3>(id)); };
+        const std::uint32_t* const id = block.id + i;
+        const auto field = [&](int offset) HWY_ATTR { return load_each(df, rays_ + offset, id, 8); };
         const HalfFloats px = field(0), py = field(1), pz = field(2), t_min = field(3);
         const HalfFloats vx = field(4), vy = field(5), vz = field(6), t_max = field(7);
-        const HalfFloats best = hn::GatherIndex(df, hits_, hn::Add(hn::ShiftLeft<2>(id), hn::ShiftLeft<1>(id)));
+        const HalfFloats best = load_each(df, hits_, id, 6);
         auto usable = can_hit(px, py, pz, vx, vy, vz, t_min, t_max);
 
         DoubleVec3 o{hn::PromoteTo(dd, px), hn::PromoteTo(dd, py), hn::PromoteTo(dd, pz)};
@@ -122,13 +120,15 @@ private:
                  hn::Add(o.z, hn::Set(dd, to_local_->translation.z))};
             d = multiply(to_local_->linear, d);
         }
-        if (own_space_) usable = hn::And(usable, may_meet_bounds(o, d));
+        if (own_space_ && !near_bounds(o)) usable = hn::And(usable, may_meet_bounds(o, d));
         write_turned(block, i, o, d);
         const Doubles scale = t_scale(d);
-        const Doubles per_scale = hn::Div(hn::Set(dd, 1), scale);
-        write_planes(block, i, {o.x, o.y, o.z},
-                     {hn::Mul(d.x, per_scale), hn::Mul(d.y, per_scale), hn::Mul(d.z, per_scale)},
-                     hn::DemoteTo(df, scale), t_min, hn::Min(t_max, best), usable);
+        DoubleVec3 scaled = d;
+        if (HWY_UNLIKELY(!hn::AllTrue(dd, hn::Eq(scale, hn::Set(dd, 1))))) {
+            const Doubles per_scale = hn::Div(hn::Set(dd, 1), scale);
+            scaled = {hn::Mul(d.x, per_scale), hn::Mul(d.y, per_scale), hn::Mul(d.z, per_scale)};
+        }
+        write_planes(block, i, o, scaled, hn::DemoteTo(df, scale), t_min, hn::Min(t_max, best), usable);
         write_depth_pad(block, i, d);
     }
 
@@ -142,6 +142,14 @@ private:
                                            sum(hn::Mul(vx, zero), hn::Mul(vy, zero), hn::Mul(vz, zero)));
         const HalfFloats length = hn::Max(hn::Abs(vx), hn::Max(hn::Abs(vy), hn::Abs(vz)));
         return hn::And(hn::Eq(nothing, zero), hn::And(hn::Gt(length, zero), hn::Le(t_min, t_max)));
+    }
+
+    /// Whether the float traversal can tell which of the rays pass the bounds by.
+    HWY_INLINE bool near_bounds(const DoubleVec3& o) const {
+        const DoubleTag dd;
+        constexpr double kNear = 256;
+        const Doubles farthest = hn::Max(hn::Abs(o.x), hn::Max(hn::Abs(o.y), hn::Abs(o.z)));
+        return hn::AllTrue(dd, hn::Le(farthest, hn::Set(dd, kNear * double{reach_})));
     }
 
     /// False only for rays whose line passes the bounds by, where the exact tests see this very ray. In double, for origins
@@ -206,7 +214,8 @@ private:
         hn::StoreU(turned(o.y, o.z, o.x), dd, block.turned_origin[0] + i);
         hn::StoreU(turned(o.z, o.x, o.y), dd, block.turned_origin[1] + i);
         hn::StoreU(turned(o.x, o.y, o.z), dd, block.turned_origin[2] + i);
-        const Doubles inverse = hn::Div(hn::Set(dd, 1), turned(d.x, d.y, d.z));
+        const Doubles depth = turned(d.x, d.y, d.z), inverse = hn::Div(hn::Set(dd, 1), depth);
+        hn::StoreU(hn::DemoteTo(HalfFloatTag(), depth), HalfFloatTag(), block.depth + i);
         hn::StoreU(hn::Mul(turned(d.y, d.z, d.x), inverse), dd, block.shear_x + i);
         hn::StoreU(hn::Mul(turned(d.z, d.x, d.y), inverse), dd, block.shear_y + i);
         hn::StoreU(inverse, dd, block.inverse_z + i);

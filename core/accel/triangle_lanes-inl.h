@@ -6,9 +6,7 @@
 #define RAYUELA_CORE_ACCEL_TRIANGLE_LANES_INL_H_
 #endif
 
-#include "core/accel/triangle_runs.h"
-
-#include "core/accel/triangle_tests-inl.h"
+#include "core/accel/shared_corners-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -16,13 +14,14 @@ namespace rayuela::HWY_NAMESPACE {
 /// A ray as the float test of triangles wants it: see RayBlock for the turn of the axes.
 struct TriangleFilter {
     std::uint32_t x, y, z;
-    float ox, oy, oz, shear_x, shear_y, pad, depth_pad;
+    float ox, oy, oz, shear_x, shear_y, slope, offset, depth_pad;  ///< Slope and offset of the FilterSlack.
     float z_begin, z_end;    ///< The depths, from the origin along z, between which a hit counts.
     float depth, t_min;      ///< Of the direction, with its sign; of the ray.
     std::uint32_t previous;  ///< The triangle decided last.
 
     HWY_INLINE static TriangleFilter of(const RayBlock& block, std::size_t i, const Ray& ray, float t_max) {
         const auto [x, y, z] = Turn(block.dominant_axis[i]);
+        const FilterSlack slack = FilterSlack::of(hn::Set(FloatTag(), block.pad[i]));
         TriangleFilter filter{.x = x,
                               .y = y,
                               .z = z,
@@ -31,25 +30,30 @@ struct TriangleFilter {
                               .oz = block.origin[z][i],
                               .shear_x = static_cast<float>(block.shear_x[i]),
                               .shear_y = static_cast<float>(block.shear_y[i]),
-                              .pad = block.pad[i],
+                              .slope = hn::GetLane(slack.slope),
+                              .offset = hn::GetLane(slack.offset),
                               .depth_pad = block.depth_pad[i],
-                              .depth = static_cast<float>(1 / block.inverse_z[i]),
+                              .depth = block.depth[i],
                               .t_min = ray.t_min,
                               .previous = kNone};
         filter.set_end(t_max);
         return filter;
     }
 
+    Turn turn() const { return Turn(z); }
     HWY_INLINE void set_end(float t_max) { depth_range(depth, depth_pad, t_min, t_max, z_begin, z_end); }
+
+    HWY_INLINE FilterRays in_all_lanes() const {
+        const auto set = [&](float value) HWY_ATTR { return hn::Set(FloatTag(), value); };
+        return {set(ox),      set(oy),   set(oz), set(shear_x), set(shear_y), {set(slope), set(offset)},
+                set(z_begin), set(z_end)};
+    }
 };
 
-/// Up to kLanes triangles of a leaf, from the one that `runs` begins with.
+/// Up to kLanes triangles of runs of n, from the one that `runs` begins with.
 HWY_INLINE FloatMask may_hit(const TriangleFilter& ray, const float* runs, std::size_t n) {
-    const FloatTag d;
-    const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
-    const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(d, runs + run * n); };
-    return may_hit(FilterRays{set(ray.ox), set(ray.oy), set(ray.oz), set(ray.shear_x), set(ray.shear_y),
-                              FilterSlack::of(set(ray.pad)), set(ray.z_begin), set(ray.z_end)},
+    const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(FloatTag(), runs + run * n); };
+    return may_hit(ray.in_all_lanes(),
                    FilterTriangles{load(ray.x), load(ray.y), load(ray.z), load(3 + ray.x), load(3 + ray.y),
                                    load(3 + ray.z), load(6 + ray.x), load(6 + ray.y), load(6 + ray.z), load(9)});
 }
@@ -67,38 +71,37 @@ public:
     std::uint32_t ray(std::size_t slot) const { return ray_of_slot_[slot]; }
     HWY_INLINE void set_end(std::size_t slot, float t_max) { filter_[slot].set_end(t_max); }
 
-    /// Triangles i to i + kLanes of the n of a leaf. Triangle k of the leaf is called names[k], or first_name + k where
-    /// `names` is null. True when `decide` must be called before the next.
-    HWY_INLINE bool add(std::size_t slot, const float* runs, std::size_t n, std::size_t i, const std::uint32_t* names,
-                        std::uint32_t first_name) {
-        const FloatTag d;
-        const FloatMask hit = hn::And(may_hit(filter_[slot], runs + i, n), hn::FirstN(d, n - i));
-        found_[size_++] = {runs + i,
-                           n,
-                           names ? names + i : nullptr,
-                           first_name + static_cast<std::uint32_t>(i),
-                           static_cast<std::uint32_t>(slot),
-                           bits_of(d, hit)};
-        return size_ == kRoom;
+    /// Triangles i to i + kLanes of runs of n. Triangle k is called first_name + k. True when `decide` must be called before
+    /// the next.
+    HWY_INLINE bool add(std::size_t slot, const float* runs, std::size_t n, std::size_t i, std::uint32_t first_name) {
+        const FloatMask hit = may_hit(filter_[slot], runs + i, n);
+        return add(slot, hit, n - i, {runs + i, n}, nullptr, first_name + static_cast<std::uint32_t>(i));
+    }
+    /// Triangles i to i + kLanes of a block. Triangle k is called names[k].
+    HWY_INLINE bool add(std::size_t slot, const LeafBlock& block, std::size_t i, const std::uint32_t* names) {
+        const CornerView view = CornerView::of(block);
+        const FloatMask hit = view.corners ? may_hit(filter_[slot].in_all_lanes(), filter_[slot].turn(), block, i)
+                                           : may_hit(filter_[slot], block.values() + i, block.triangles());
+        return add(slot, hit, block.triangles() - i, view.from(i), names + i, 0);
     }
 
-    /// Calls accept(i, name, ShapeHit) for each triangle added that ray i of the block hits at t within [t_min, t_max].
+    /// Calls accept(slot, name, ShapeHit) for each triangle added that the slot's ray hits at t within [t_min, t_max].
     template <typename Accept>
     HWY_INLINE void decide(const Accept& accept) {
         // Apart from the filter, which so waits for no branch.
         for (const Found& found : std::span<const Found>(found_, size_)) {
             TriangleFilter& ray = filter_[found.slot];
-            const std::size_t n = found.run_length;
             for (LaneBits bits = found.candidates; bits != 0; bits &= bits - 1) {
                 const std::size_t k = first_lane(bits), to = candidates_.size;
                 for (std::size_t corner = 0; corner < 3; ++corner) {
-                    candidates_.vertex[3 * corner][to] = found.runs[(3 * corner + ray.x) * n + k];
-                    candidates_.vertex[3 * corner + 1][to] = found.runs[(3 * corner + ray.y) * n + k];
-                    candidates_.vertex[3 * corner + 2][to] = found.runs[(3 * corner + ray.z) * n + k];
+                    candidates_.vertex[3 * corner][to] = found.view.coordinate(k, corner, ray.x);
+                    candidates_.vertex[3 * corner + 1][to] = found.view.coordinate(k, corner, ray.y);
+                    candidates_.vertex[3 * corner + 2][to] = found.view.coordinate(k, corner, ray.z);
                 }
+                candidates_.set_ray(to, block_, ray_of_slot_[found.slot]);
                 const std::uint32_t name =
                     found.names ? found.names[k] : found.first_name + static_cast<std::uint32_t>(k);
-                candidates_.ray[to] = ray_of_slot_[found.slot];
+                candidates_.slot[to] = found.slot;
                 candidates_.name[to] = name;
                 // A large triangle lies in many leaves of a ray.
                 candidates_.size += name == ray.previous ? 0 : 1;
@@ -115,9 +118,8 @@ private:
 
     /// What the filter leaves of up to kLanes triangles.
     struct Found {
-        const float* runs;
-        std::size_t run_length;
-        const std::uint32_t* names;
+        CornerView view;
+        const std::uint32_t* names;  ///< Null where triangles are called first_name + k.
         std::uint32_t first_name, slot;
         LaneBits candidates;
     };
@@ -126,9 +128,27 @@ private:
     struct Candidates {
         static constexpr std::size_t kCapacity = 64;
         alignas(64) float vertex[9][kCapacity];
-        std::uint32_t ray[kCapacity] = {}, name[kCapacity];
+        alignas(64) double ray[6][kCapacity];  ///< As ExactRays has it.
+        std::uint32_t slot[kCapacity], name[kCapacity];
         std::size_t size = 0;
+
+        HWY_INLINE void set_ray(std::size_t to, const RayBlock& block, std::size_t i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) ray[axis][to] = block.turned_origin[axis][i];
+            ray[3][to] = block.shear_x[i];
+            ray[4][to] = block.shear_y[i];
+            ray[5][to] = block.inverse_z[i];
+        }
     };
+
+    /// What the filter leaves of the next n triangles.
+    HWY_INLINE bool add(std::size_t slot, FloatMask hit, std::size_t n, const CornerView& view,
+                        const std::uint32_t* names, std::uint32_t first_name) {
+        const FloatTag d;
+        const LaneBits candidates = bits_of(d, hn::And(hit, hn::FirstN(d, n)));
+        found_[size_] = {view, names, first_name, static_cast<std::uint32_t>(slot), candidates};
+        size_ += candidates != 0 ? 1 : 0;
+        return size_ == kRoom;
+    }
 
     template <typename Accept>
     void decide_candidates(const Accept& accept);
@@ -146,19 +166,14 @@ template <typename Accept>
 void TriangleLanes::decide_candidates(const Accept& accept) {
     const DoubleTag dd;
     const hn::Rebind<float, DoubleTag> df;
-    const hn::Rebind<std::int32_t, DoubleTag> dw;
-    const hn::RebindToSigned<DoubleTag> di;
     for (std::size_t i = 0; i < candidates_.size; i += kDoubles) {
         // Past the last candidate lie earlier ones or zeros, whose results are dropped.
-        const auto index = hn::PromoteTo(di, hn::LoadU(dw, reinterpret_cast<const std::int32_t*>(candidates_.ray + i)));
-        const auto ray = [&](const double* from) HWY_ATTR { return hn::GatherIndex(dd, from, index); };
-        const auto vertex = [&](std::size_t axis)
-                                HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, candidates_.vertex[axis] + i)); };
-        const ExactHits hits = intersect(
-            ExactRays{ray(block_.turned_origin[0]), ray(block_.turned_origin[1]), ray(block_.turned_origin[2]),
-                      ray(block_.shear_x), ray(block_.shear_y), ray(block_.inverse_z)},
-            ExactTriangles{vertex(0), vertex(1), vertex(2), vertex(3), vertex(4), vertex(5), vertex(6), vertex(7),
-                           vertex(8)});
+        const auto ray = [&](std::size_t k) HWY_ATTR { return hn::Load(dd, candidates_.ray[k] + i); };
+        const auto vertex = [&](std::size_t k)
+                                HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, candidates_.vertex[k] + i)); };
+        const ExactHits hits = intersect(ExactRays{ray(0), ray(1), ray(2), ray(3), ray(4), ray(5)},
+                                         ExactTriangles{vertex(0), vertex(1), vertex(2), vertex(3), vertex(4),
+                                                        vertex(5), vertex(6), vertex(7), vertex(8)});
         const auto hit = hn::And(hits.hit, hn::FirstN(dd, candidates_.size - i));
         alignas(64) double t[kDoubles], us[kDoubles], vs[kDoubles];
         hn::Store(hits.t, dd, t);
@@ -166,11 +181,11 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
         hn::Store(hits.v, dd, vs);
         for (LaneBits bits = bits_of(dd, hit); bits != 0; bits &= bits - 1) {
             const std::size_t k = first_lane(bits);
-            const std::uint32_t ray_index = candidates_.ray[i + k];
-            const Ray& limits = rays_[block_.id[ray_index]];
+            const std::uint32_t slot = candidates_.slot[i + k];
+            const Ray& limits = rays_[block_.id[ray_of_slot_[slot]]];
             const ShapeHit found = triangle_hit(t[k], us[k], vs[k]);
             if (!TRange{limits.t_min, limits.t_max}.contains(found.t)) continue;
-            accept(ray_index, candidates_.name[i + k], found);
+            accept(slot, candidates_.name[i + k], found);
         }
     }
     candidates_.size = 0;

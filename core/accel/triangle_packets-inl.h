@@ -6,7 +6,7 @@
 #define RAYUELA_CORE_ACCEL_TRIANGLE_PACKETS_INL_H_
 #endif
 
-#include "core/accel/triangle_runs.h"
+#include "core/accel/leaf_blocks.h"
 #include "core/accel/triangle_tests-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,7 +27,7 @@ public:
             const std::uint32_t id = block_.id[first + lane];
             shear_x_[lane] = static_cast<float>(block_.shear_x[first + lane]);
             shear_y_[lane] = static_cast<float>(block_.shear_y[first + lane]);
-            depth_[lane] = static_cast<float>(1 / block_.inverse_z[first + lane]);
+            depth_[lane] = block_.depth[first + lane];
             set_end(lane, t_end(rays_[id], hits[id]));
         }
     }
@@ -36,40 +36,65 @@ public:
         depth_range(depth_[lane], block_.depth_pad[i], rays_[block_.id[i]].t_min, t_max, z_begin_[lane], z_end_[lane]);
     }
 
-    /// Calls accept(lane, i, ShapeHit) for each ray in `here` that triangle i of the n of a leaf hits at t within
-    /// [t_min, t_max].
+    /// Calls accept(lane, i, ShapeHit) for each ray in `here` that triangle i of n runs hits at t within [t_min, t_max].
     template <typename Accept>
     HWY_INLINE void test(const float* runs, std::size_t n, FloatMask here, const Accept& accept) const {
-        test(runs, n, 0, n, here, accept);
-    }
-    /// The same with triangles [begin, end) of the n.
-    template <typename Accept>
-    HWY_INLINE void test(const float* runs, std::size_t n, std::size_t begin, std::size_t end, FloatMask here,
-                         const Accept& accept) const {
-        const FloatTag d;
-        const auto load = [&](const float* values) HWY_ATTR { return hn::Load(d, values); };
-        const auto of_block = [&](const float* values) HWY_ATTR { return hn::LoadU(d, values + first_); };
-        const FilterRays rays{of_block(block_.origin[turn_.x]),
-                              of_block(block_.origin[turn_.y]),
-                              of_block(block_.origin[turn_.z]),
-                              load(shear_x_),
-                              load(shear_y_),
-                              FilterSlack::of(of_block(block_.pad)),
-                              load(z_begin_),
-                              load(z_end_)};
+        const FilterRays rays = filter();
         const TurnedRuns turned(runs, n, turn_);
-        for (std::size_t i = begin; i < end; ++i) {
-            const FloatMask may = may_hit(rays, turned.triangle(i));
+        for (std::size_t i = 0; i < n; ++i) {
+            const LaneBits candidates = bits_of(FloatTag(), hn::And(may_hit(rays, turned.triangle(i)), here));
+            if (candidates != 0) decide({runs, n}, i, candidates, accept);
+        }
+    }
+    /// The same for the triangles of a block.
+    template <typename Accept>
+    HWY_INLINE void test(const LeafBlock& block, FloatMask here, const Accept& accept) const {
+        const CornerView view = CornerView::of(block);
+        if (!view.corners) return test(block.values(), block.triangles(), here, accept);
+        const FloatTag d;
+        const FilterRays rays = filter();
+        const float* const axis[3] = {view.values + turn_.x * view.stride, view.values + turn_.y * view.stride,
+                                      view.values + turn_.z * view.stride};
+        alignas(64) float vertices[LeafBlock::kMaxVertices][3][kLanes];
+        for (std::size_t i = 0; i < view.stride; ++i) {
+            const ShearedVertices vertex =
+                shear(rays, hn::Set(d, axis[0][i]), hn::Set(d, axis[1][i]), hn::Set(d, axis[2][i]));
+            hn::Store(vertex.x, d, vertices[i][0]);
+            hn::Store(vertex.y, d, vertices[i][1]);
+            hn::Store(vertex.z, d, vertices[i][2]);
+        }
+        for (std::size_t i = 0; i < block.triangles(); ++i) {
+            const auto corner = [&](std::size_t k) HWY_ATTR {
+                const auto& [x, y, z] = vertices[LeafBlock::corner(view.corners[i], k)];
+                return ShearedVertices{hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+            };
+            const Floats extent = hn::Set(d, LeafBlock::extent(view.corners[i]));
+            const FloatMask may = may_hit(rays, corner(0), corner(1), corner(2), extent);
             const LaneBits candidates = bits_of(d, hn::And(may, here));
-            if (candidates != 0) decide(turned.run, i, candidates, accept);
+            if (candidates != 0) decide(view, i, candidates, accept);
         }
     }
 
 private:
+    HWY_INLINE FilterRays filter() const {
+        const auto load = [&](const float* values) HWY_ATTR { return hn::Load(FloatTag(), values); };
+        const auto of_block = [&](const float* values) HWY_ATTR { return hn::LoadU(FloatTag(), values + first_); };
+        return {of_block(block_.origin[turn_.x]),
+                of_block(block_.origin[turn_.y]),
+                of_block(block_.origin[turn_.z]),
+                load(shear_x_),
+                load(shear_y_),
+                FilterSlack::of(of_block(block_.pad)),
+                load(z_begin_),
+                load(z_end_)};
+    }
+
     template <typename Accept>
-    HWY_INLINE void decide(const float* const* run, std::size_t i, LaneBits candidates, const Accept& accept) const {
+    HWY_INLINE void decide(const CornerView& view, std::size_t i, LaneBits candidates, const Accept& accept) const {
         const DoubleTag dd;
-        const auto set = [&](std::size_t k) HWY_ATTR { return hn::Set(dd, double{run[k][i]}); };
+        const std::uint32_t axes[3] = {turn_.x, turn_.y, turn_.z};
+        const auto set = [&](std::size_t k)
+                             HWY_ATTR { return hn::Set(dd, double{view.coordinate(i, k / 3, axes[k % 3])}); };
         for (std::size_t lane = 0; lane < kLanes; lane += kDoubles) {
             LaneBits part = candidates >> lane & ((LaneBits{1} << kDoubles) - 1);
             if (part == 0) continue;

@@ -49,7 +49,7 @@ struct Turn {
         : x(dominant_axis == 2 ? 0 : dominant_axis + 1), y(x == 2 ? 0 : x + 1), z(dominant_axis) {}
 };
 
-/// The n triangles of a leaf in a turn of the axes.
+/// Triangles of runs in a turn of the axes.
 struct TurnedRuns {
     const float* run[kTriangleRuns];
 
@@ -65,27 +65,37 @@ struct TurnedRuns {
     }
 };
 
+/// Vertices as rays see them that go along z from the origin.
+struct ShearedVertices {
+    Floats x, y, z;
+};
+
+HWY_INLINE ShearedVertices shear(const FilterRays& ray, Floats x, Floats y, Floats z) {
+    const Floats depth = z - ray.oz;
+    return {hn::NegMulAdd(ray.shear_x, depth, x - ray.ox), hn::NegMulAdd(ray.shear_y, depth, y - ray.oy), depth};
+}
+
 /// False only for triangles that the exact test rejects. With u the unit roundoff and R = |origin| + |bounds|, the sheared
 /// vertices are right within 8uR; those of a triangle of extent E that is hit are below 2E; so its edge functions are right
 /// within 128uR(E + uR), which is less than 16 pad (E + 1.6 pad). A hit's depth lies between those of the vertices. That holds
 /// with and without fma.
-HWY_INLINE FloatMask may_hit(const FilterRays& ray, const FilterTriangles& triangle) {
-    const Floats az = triangle.az - ray.oz, bz = triangle.bz - ray.oz, cz = triangle.cz - ray.oz;
-    const Floats ax = hn::NegMulAdd(ray.shear_x, az, triangle.ax - ray.ox),
-                 ay = hn::NegMulAdd(ray.shear_y, az, triangle.ay - ray.oy);
-    const Floats bx = hn::NegMulAdd(ray.shear_x, bz, triangle.bx - ray.ox),
-                 by = hn::NegMulAdd(ray.shear_y, bz, triangle.by - ray.oy);
-    const Floats cx = hn::NegMulAdd(ray.shear_x, cz, triangle.cx - ray.ox),
-                 cy = hn::NegMulAdd(ray.shear_y, cz, triangle.cy - ray.oy);
-    const Floats u = hn::NegMulAdd(cy, bx, cx * by);
-    const Floats v = hn::NegMulAdd(ay, cx, ax * cy);
-    const Floats w = hn::NegMulAdd(by, ax, bx * ay);
-    const Floats slack = hn::MulAdd(ray.slack.slope, triangle.extent, ray.slack.offset);
+HWY_INLINE FloatMask may_hit(const FilterRays& ray, const ShearedVertices& a, const ShearedVertices& b,
+                             const ShearedVertices& c, Floats extent) {
+    const Floats u = hn::NegMulAdd(c.y, b.x, c.x * b.y);
+    const Floats v = hn::NegMulAdd(a.y, c.x, a.x * c.y);
+    const Floats w = hn::NegMulAdd(b.y, a.x, b.x * a.y);
+    const Floats slack = hn::MulAdd(ray.slack.slope, extent, ray.slack.offset);
     const auto outside =
         hn::And(hn::Lt(hn::Min(u, hn::Min(v, w)), hn::Neg(slack)), hn::Gt(hn::Max(u, hn::Max(v, w)), slack));
-    const auto apart =
-        hn::Or(hn::Lt(hn::Max(az, hn::Max(bz, cz)), ray.z_begin), hn::Gt(hn::Min(az, hn::Min(bz, cz)), ray.z_end));
+    const auto apart = hn::Or(hn::Lt(hn::Max(a.z, hn::Max(b.z, c.z)), ray.z_begin),
+                              hn::Gt(hn::Min(a.z, hn::Min(b.z, c.z)), ray.z_end));
     return hn::Not(hn::Or(outside, apart));
+}
+
+HWY_INLINE FloatMask may_hit(const FilterRays& ray, const FilterTriangles& triangle) {
+    return may_hit(ray, shear(ray, triangle.ax, triangle.ay, triangle.az),
+                   shear(ray, triangle.bx, triangle.by, triangle.bz), shear(ray, triangle.cx, triangle.cy, triangle.cz),
+                   triangle.extent);
 }
 
 /// The depths between which hits of a ray with t between t_min and t_max lie, where its direction has this depth and those of

@@ -127,8 +127,7 @@ private:
     }
 
     void test(const KdNode& leaf) {
-        for (std::uint32_t i = leaf.first(); i < leaf.first() + leaf.count(); ++i) {
-            const std::uint32_t primitive = mesh_.tree.references[i];
+        for (const std::uint32_t primitive : mesh_.references(leaf)) {
             const glm::uvec3& t = triangles_->triangles[primitive];
             const auto& p = triangles_->positions;
             ShapeHit hit;

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "core/accel/triangle_runs.h"
+#include "core/shapes/mesh.h"
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rayuela {
+
+/// Triangles of a leaf of a mesh's tree, as many as the widest kernels test at once. Most leaves are one block, in which each
+/// vertex stands once; where triangles share too few vertices, a block holds runs (triangle_runs.h) instead. In floats; words
+/// are stored by their bits:
+///     a word: number of triangles (8 bits), number of vertices or 0 for runs (8 bits)
+///     a word: where the triangles' names begin in KdTree::references
+///     x of the vertices, y, z; then a word a triangle: the numbers of its corners (8 bits each), its extent (8 bits)
+///     or: the runs
+class LeafBlock {
+public:
+    static constexpr std::uint32_t kMaxTriangles = 16, kMaxVertices = 16;
+    static constexpr std::size_t kHeader = 2;
+
+    explicit LeafBlock(const float* data) : data_(data) {}
+
+    std::uint32_t triangles() const { return word(0) & 0xff; }
+    /// 0 for runs.
+    std::uint32_t vertices() const { return word(0) >> 8; }
+    std::uint32_t first_name() const { return word(1); }
+    const float* values() const { return data_ + kHeader; }
+    const float* corners() const { return values() + 3 * vertices(); }
+    /// In floats.
+    std::size_t size() const {
+        return kHeader + (vertices() > 0 ? 3 * vertices() + triangles() : kTriangleRuns * triangles());
+    }
+
+    /// Of a triangle's word: the number of its i-th corner.
+    static std::uint32_t corner(float word, std::size_t i) {
+        return std::bit_cast<std::uint32_t>(word) >> (8 * i) & 0xff;
+    }
+    /// Of a triangle's word: its largest extent along an axis, rounded up to a power of two.
+    static float extent(float word) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(word) >> 24 << 23); }
+    /// What a word holds of it: the exponent.
+    static std::uint32_t extent_bits(float extent) {
+        return (std::bit_cast<std::uint32_t>(extent) + 0x7fffffu) >> 23 << 24;
+    }
+
+private:
+    std::uint32_t word(std::size_t i) const { return std::bit_cast<std::uint32_t>(data_[i]); }
+
+    const float* data_;
+};
+
+/// Where the corners of triangles stand: of a block of vertices, or in runs.
+struct CornerView {
+    const float* values;
+    std::size_t stride;              ///< Vertices of the block, or triangles of the runs.
+    const float* corners = nullptr;  ///< As LeafBlock has them; null for runs.
+
+    static CornerView of(const LeafBlock& block) {
+        if (block.vertices() == 0) return {block.values(), block.triangles()};
+        return {block.values(), block.vertices(), block.corners()};
+    }
+    /// The same without the first triangles.
+    CornerView from(std::size_t first) const {
+        return corners ? CornerView{values, stride, corners + first} : CornerView{values + first, stride};
+    }
+    float coordinate(std::size_t triangle, std::size_t corner, std::size_t axis) const {
+        return corners ? values[axis * stride + LeafBlock::corner(corners[triangle], corner)]
+                       : values[(3 * corner + axis) * stride + triangle];
+    }
+};
+
+/// Appends the blocks of a leaf with these triangles, whose names begin at `first_name`.
+void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
+                        std::vector<float>& data);
+
+}  // namespace rayuela
