@@ -58,7 +58,7 @@ bool KdAccelerator::build_objects(BuildControl& control) {
     std::vector<Bounds3> bounds;
     for (std::uint32_t i = 0; i < objects_.size(); ++i) {
         const MeshTree* mesh = mesh_of_object_[i];
-        bounds.push_back(world_bounds(objects_[i], instances_[i], mesh ? mesh->tree.bounds : Bounds3()));
+        bounds.push_back(world_bounds(objects_[i], instances_[i], mesh ? mesh->bounds : Bounds3()));
         if (objects_[i].is_plane()) planes_.push_back(i);
         if (!mesh) ++stats_.primitives;
     }

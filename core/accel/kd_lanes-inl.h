@@ -43,8 +43,8 @@ public:
     /// Lanes without a ray write to stacks of their own like all others.
     LaneGroup() { hn::Store(hn::Iota(WordTag(), 0), WordTag(), height_); }
 
-    /// Puts a ray at the root.
-    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i) {
+    /// Puts a ray at the root, or before that at the leaf of what stands apart.
+    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i, std::uint32_t apart) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             origin_[axis][lane] = block.origin[axis][i];
             inverse_[axis][lane] = block.inverse[axis][i];
@@ -53,9 +53,14 @@ public:
         begin_[lane] = block.begin[i];
         end_[lane] = block.end[i];
         limit_[lane] = block.limit[i];
-        node_[lane] = 0;
+        node_[lane] = apart;
         height_[lane] = static_cast<std::uint32_t>(lane);
         active_ |= LaneBits{1} << lane;
+        if (apart == 0 || block.begin[i] > block.end[i]) return;
+        // As pop has it: the root begins where this ends.
+        stack_[lane] = block.dominant_axis[i] | std::uint64_t{std::bit_cast<std::uint32_t>(block.end[i])} << 32;
+        height_[lane] += kLanes;
+        end_[lane] = block.begin[i];
     }
     LaneBits active() const { return active_; }
     /// What begins behind `t` no longer counts for the lane's ray.
@@ -194,10 +199,10 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
         constexpr LaneBits kAll = static_cast<LaneBits>((std::uint64_t{1} << kLanes) - 1);
         for (LaneBits idle = kAll & ~groups.group[g].active(); idle != 0; idle &= idle - 1) {
             const std::size_t lane = first_lane(idle), slot = g * kLanes + lane;
-            while (next < block.size && block.begin[next] > block.end[next]) ++next;
+            while (next < block.size && !block.is_open(next, tree)) ++next;
             if (next == block.size) return;
             client.start(slot, next);
-            groups.group[g].start(lane, block, next++);
+            groups.group[g].start(lane, block, next++, tree.apart);
         }
     };
     while (true) {

@@ -10,6 +10,7 @@ AccelStats KdTree::stats() const {
     stats.nodes = nodes.size();
     stats.references = references.size();
     stats.memory_bytes = nodes.size() * sizeof(KdNode) + references.size() * sizeof(std::uint32_t);
+    stats.leaves = apart != 0 ? 1 : 0;
     std::vector<std::pair<std::uint32_t, int>> open{{0u, 0}};
     while (!open.empty()) {
         const auto [index, depth] = open.back();

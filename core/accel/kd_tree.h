@@ -51,6 +51,8 @@ struct KdTree {
     std::vector<KdNode> nodes{KdNode()};
     std::vector<std::uint32_t> references;  ///< Primitives, leaf by leaf.
     Bounds3 bounds;                         ///< The root's cell.
+    /// A leaf of primitives that stand apart, for rays to test before they go to the root; 0 where there are none.
+    std::uint32_t apart = 0;
 
     /// Counts of nodes, leaves, references and their memory, and the depth.
     AccelStats stats() const;

@@ -11,7 +11,7 @@ ListAccelerator::ListAccelerator(std::vector<GeometryInstance> instances, const 
         const TracedObject& object = objects_.emplace_back(instances_[i]);
         const MeshTree* mesh = triangles_of(object, previous);
         mesh_of_object_.push_back(mesh);
-        bounds_.push_back(world_bounds(object, instances_[i], mesh ? mesh->tree.bounds : Bounds3()));
+        bounds_.push_back(world_bounds(object, instances_[i], mesh ? mesh->bounds : Bounds3()));
         if (!mesh) ++stats_.primitives;
         if (object.is_plane()) planes_.push_back(i);
         if (!fits_a_tree(bounds_.back())) continue;

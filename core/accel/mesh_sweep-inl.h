@@ -45,7 +45,7 @@ template <Query kQuery>
 void sweep_mesh(const KdScene& scene, std::uint32_t object, std::span<const std::uint32_t> ids,
                 std::span<const Ray> rays, std::span<Hit> hits, RayBlock& block) {
     const MeshTree& mesh = *scene.mesh_trees[object];
-    const RayBlockWriter writer(rays, hits, &scene.objects[object], mesh.tree.bounds);
+    const RayBlockWriter writer(rays, hits, &scene.objects[object], mesh.bounds, mesh.bounds);
     writer.write(ids, block);
     std::uint32_t sorted[3][kBlockRays];
     std::size_t size[3] = {};

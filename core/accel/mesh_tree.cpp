@@ -1,5 +1,6 @@
 #include "core/accel/mesh_tree.h"
 
+#include "core/accel/large_objects.h"
 #include "core/accel/parallel.h"
 #include "core/accel/triangle_runs.h"
 
@@ -61,11 +62,27 @@ std::vector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
     return data;
 }
 
+/// The triangles that are better tested with every ray than in the leaves of a tree over all. They no longer have bounds.
+std::vector<std::uint32_t> take_apart(std::span<Bounds3> bounds, const AccelSettings& settings) {
+    if (settings.split != KdSplit::sah || bounds.size() <= static_cast<std::size_t>(settings.leaf_size)) return {};
+    std::vector<std::uint32_t> apart = find_large(bounds, {});
+    for (const std::uint32_t i : apart) bounds[i] = {};
+    return apart;
+}
+
 /// Null when cancelled.
 std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>& mesh, KdTree tree,
                                        const BuildControl& control) {
     auto result = std::make_shared<MeshTree>();
     result->tree = std::move(tree);
+    result->bounds = result->tree.bounds;
+    if (result->tree.apart != 0) {
+        const KdNode& apart = result->tree.nodes[result->tree.apart];
+        for (const std::uint32_t i : std::span(result->tree.references).subspan(apart.first(), apart.count())) {
+            for (int corner = 0; corner < 3; ++corner)
+                result->bounds.extend(mesh->positions[mesh->triangles[i][corner]]);
+        }
+    }
     result->leaf_data = place_leaves(*mesh, result->tree, control);
     if (control.cancelled) return nullptr;
     result->stats = result->tree.stats();
@@ -92,12 +109,18 @@ std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const Trian
 
 std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
                                                 const AccelSettings& settings, BuildControl& control) {
-    const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
+    std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
     if (control.cancelled) return nullptr;
+    const std::vector<std::uint32_t> apart = take_apart(bounds, settings);
     auto tree = build_kd_tree(
         {.bounds = bounds, .mesh = mesh.get(), .split = settings.split, .leaf_size = settings.leaf_size}, control);
     if (!tree) return nullptr;
-
+    if (!apart.empty()) {
+        tree->apart = static_cast<std::uint32_t>(tree->nodes.size());
+        tree->nodes.push_back(KdNode::leaf(static_cast<std::uint32_t>(tree->references.size()),
+                                           static_cast<std::uint32_t>(apart.size())));
+        tree->references.insert(tree->references.end(), apart.begin(), apart.end());
+    }
     return finish(mesh, std::move(*tree), control);
 }
 

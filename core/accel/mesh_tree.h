@@ -13,6 +13,7 @@ struct MeshTree {
     std::weak_ptr<const TriangleMesh> mesh;
     KdTree tree;                   ///< KdNode::first of a leaf: where its blocks begin.
     std::vector<float> leaf_data;  ///< Blocks (leaf_blocks.h), and kRunPadding floats that kernels may read too far.
+    Bounds3 bounds;                ///< Of all triangles that a ray can meet.
     AccelStats stats;
 
     LeafBlock first_block(const KdNode& leaf) const { return LeafBlock(leaf_data.data() + leaf.first()); }

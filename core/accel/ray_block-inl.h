@@ -6,6 +6,7 @@
 #define RAYUELA_CORE_ACCEL_RAY_BLOCK_INL_H_
 #endif
 
+#include "core/accel/kd_tree.h"
 #include "core/accel/traced_object.h"
 #include "core/math/float_error.h"
 
@@ -51,6 +52,15 @@ struct RayBlock {
     alignas(64) float begin[kRoom], end[kRoom];
     alignas(64) float limit[kRoom];  ///< What begins behind it does not count.
 
+    /// Whether ray i has to be traced through the tree.
+    bool is_open(std::size_t i, const KdTree& tree) const {
+        return tree.apart != 0 ? end[i] > -kInfinity : begin[i] <= end[i];
+    }
+    void close(std::size_t i) {
+        begin[i] = 0;
+        end[i] = -kInfinity;
+    }
+
     // As in TriangleRay, in the turn of the axes that makes the dominant one z.
     alignas(64) std::uint32_t dominant_axis[kRoom];
     alignas(64) double turned_origin[3][kRoom];
@@ -73,17 +83,17 @@ HWY_INLINE DoubleVec3 multiply(const glm::dmat3& m, const DoubleVec3& v) {
 }
 
 /// Prepares rays `ids` (at most kBlockRays) of a batch, up to the closest hits so far. `object` is the one whose space is the
-/// tree's; null for the world.
+/// tree's; null for the world. `bounds` are the tree's, `all` hold what stands apart as well.
 class RayBlockWriter {
 public:
     RayBlockWriter(std::span<const Ray> rays, std::span<const Hit> hits, const TracedObject* object,
-                   const Bounds3& bounds)
+                   const Bounds3& bounds, const Bounds3& all)
         : rays_(&rays.data()->origin.x),
           hits_(&hits.data()->t),
           to_local_(object && !object->in_world ? &object->to_local : nullptr),
           own_space_(object != nullptr),
           bounds_(bounds),
-          reach_(max_component(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)))) {}
+          reach_(max_component(glm::max(glm::abs(all.lo), glm::abs(all.hi)))) {}
 
     HWY_INLINE void write(std::span<const std::uint32_t> ids, RayBlock& block) const {
         block.size = ids.size();

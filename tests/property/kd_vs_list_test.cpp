@@ -88,6 +88,44 @@ TEST(KdVersusList, ACrowdOfObjects) {
     expect_same_as_list(instances, make_rays(instances, 3000, 8), {1, 16, 64});
 }
 
+/// The mesh in a closed room of twelve triangles, all in one mesh.
+MeshPtr in_a_room(const TriangleMesh& mesh, float half) {
+    std::vector<Vec3> positions = mesh.positions;
+    std::vector<glm::uvec3> triangles = mesh.triangles;
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    for (std::uint32_t i = 0; i < 8; ++i)
+        positions.push_back(half * Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::uint32_t u = 1u << axis, v = 1u << (axis + 1) % 3, w = 1u << (axis + 2) % 3;
+        for (const std::uint32_t side : {0u, w}) {
+            triangles.emplace_back(first + side, first + side + u, first + side + u + v);
+            triangles.emplace_back(first + side, first + side + u + v, first + side + v);
+        }
+    }
+    return make_mesh(std::move(positions), std::move(triangles));
+}
+
+TEST(KdVersusList, LargeTrianglesOfAMesh) {
+    Random random(21);
+    const MeshPtr room = in_a_room(*make_ball(12, 1, Vec3(0.2f, 0, 0), 0.2f, 3), 1.5f);
+    for (const bool alone : {true, false}) {
+        std::vector<GeometryInstance> instances{{room, {}}};
+        for (int i = 0; i < 6 && !alone; ++i) instances.push_back({room, random_transform(random)});
+        const auto built = build(instances, {});
+        const KdTree& tree = dynamic_cast<const KdAccelerator&>(*built).mesh_tree(0)->tree;
+        ASSERT_NE(tree.apart, 0u);
+        EXPECT_EQ(tree.nodes[tree.apart].count(), 12u);
+        EXPECT_LT(tree.bounds.hi.y, 1.3f) << "the tree holds the ball alone";
+        std::vector<Ray> rays = make_rays(instances, 3000, 22);
+        for (const Ray& ray : bundles(make_rays(instances, 60, 23), 24)) rays.push_back(ray);
+        for (const std::string_view set : instruction_sets()) {
+            use_instruction_set(set);
+            expect_same_as_list(instances, rays, {1, 16, 10'000});
+        }
+    }
+    use_instruction_set(instruction_sets().front());
+}
+
 TEST(KdVersusList, LargeObjectsBesideACrowd) {
     auto instances = make_scene(9, 300, 30);
     Mat3 flattened(1);

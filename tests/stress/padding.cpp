@@ -26,13 +26,13 @@ std::uint64_t count_visits(const MeshTree& mesh, const TracedObject& object, std
     const KdNode* const nodes = mesh.tree.nodes.data();
     RayBlock block;
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
-        RayBlockWriter(rays, hits, &object, mesh.tree.bounds).write({&i, 1}, block);
+        RayBlockWriter(rays, hits, &object, mesh.tree.bounds, mesh.bounds).write({&i, 1}, block);
         MeshClient<Query::closest> client(mesh, 0, block, rays, hits);
         LaneGroups lanes;
         LaneGroup& group = lanes.group[0];
-        if (block.begin[0] > block.end[0]) continue;
+        if (!block.is_open(0, mesh.tree)) continue;
         client.start(0, 0);
-        group.start(0, block, 0);
+        group.start(0, block, 0, mesh.tree.apart);
         while (group.active() != 0) {
             while (group.step(nodes), group.at_leaf().any == 0) ++visits;
             const LeafVisit visit{0, group.first(0), group.count(0)};
@@ -56,7 +56,7 @@ double trace_seconds(const MeshTree& mesh, const TracedObject& object, std::span
     for (std::size_t first = 0; first < rays.size(); first += ids.size()) {
         ids.resize(std::min(kBlockRays, rays.size() - first));
         std::iota(ids.begin(), ids.end(), static_cast<std::uint32_t>(first));
-        RayBlockWriter(rays, hits, &object, mesh.tree.bounds).write(ids, block);
+        RayBlockWriter(rays, hits, &object, mesh.tree.bounds, mesh.bounds).write(ids, block);
         if (!padded) std::fill(std::begin(block.pad), std::end(block.pad), 0.0f);
         MeshClient<Query::closest> client(mesh, 0, block, rays, hits);
         const std::clock_t start = std::clock();
@@ -92,6 +92,7 @@ public:
         ray_ = RayD(ray);
         range_ = {ray.t_min, ray.t_max};
         best_ = {};
+        if (mesh_.tree.apart != 0) visit(mesh_.tree.apart, ray.t_min, ray.t_max);
         double begin = ray.t_min, end = ray.t_max;
         for (int axis = 0; axis < 3; ++axis) {
             const double lo = mesh_.tree.bounds.lo[axis], hi = mesh_.tree.bounds.hi[axis];

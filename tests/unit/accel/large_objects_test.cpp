@@ -53,7 +53,7 @@ TEST(LargeObjects, LargestFirstAndNoMoreThanTheLimit) {
     auto instances = crowd();
     for (int i = 0; i < 20; ++i) instances.push_back(floor_of(20 + static_cast<float>(i)));
     const std::vector<std::uint32_t> large = large_in(instances);
-    ASSERT_EQ(large.size(), kLargeObjects);
+    ASSERT_EQ(large.size(), kLargePrimitives);
     for (std::uint32_t k = 0; k < large.size(); ++k) EXPECT_EQ(large[k], 119 - k);
 }
 
