@@ -17,7 +17,7 @@ public:
         : scene_(scene), surfaces_(scene.instances()), view_(view) {}
 
     std::vector<Ray> primary(int side) {
-        constexpr int kBlock = 16;
+        constexpr int kBlock = 16, kSquare = 4;
         const Vec3 forward = glm::normalize(view_.target - view_.eye);
         const Vec3 right = glm::normalize(glm::cross(forward, view_.up)), up = glm::cross(right, forward);
         const float half = std::tan(glm::radians(view_.field_of_view) / 2);
@@ -27,11 +27,16 @@ public:
             rays.push_back(
                 {.origin = view_.eye, .direction = glm::normalize(forward + half * (at.x * right - at.y * up))});
         };
-        for (int block = 0; block < (side / kBlock) * (side / kBlock); ++block) {
-            for (int k = 0; k < kBlock * kBlock; ++k) {
-                add(block % (side / kBlock) * kBlock + k % kBlock, block / (side / kBlock) * kBlock + k / kBlock);
+        const auto each_square = [](int size, int part, const auto& use) {
+            for (int y = 0; y < size; y += part) {
+                for (int x = 0; x < size; x += part) use(x, y);
             }
-        }
+        };
+        each_square(side / kBlock * kBlock, kBlock, [&](int left, int top) {
+            each_square(kBlock, kSquare, [&](int x, int y) {
+                each_square(kSquare, 1, [&](int column, int row) { add(left + x + column, top + y + row); });
+            });
+        });
         return rays;
     }
 

@@ -20,7 +20,8 @@ struct RaySet {
     bool coherent() const { return kind == RayKind::primary || kind == RayKind::shadow; }
 };
 
-/// Camera rays of `side` x `side` pixels in blocks of 16 x 16, diffuse bounces and shadow rays from where they arrive.
+/// Camera rays of `side` x `side` pixels in blocks of 16 x 16 and squares of 4 x 4, as the renderer has them, diffuse bounces
+/// and shadow rays from where they arrive.
 std::vector<RaySet> make_ray_sets(const Accelerator& scene, const BenchMesh& view, int side);
 
 }  // namespace rayuela
