@@ -5,60 +5,64 @@
 namespace rayuela {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
-
-Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle) {
-    const glm::uvec3& t = mesh.triangles[triangle];
-    return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
-}
-
 /// Triangles over shared vertices.
 class SharedBlock {
 public:
+    explicit SharedBlock(const TriangleMesh& mesh) : mesh_(mesh) {}
+
     /// False where there is no room for the triangle.
-    bool add(const Corners& corners) {
+    bool add(std::uint32_t triangle) {
         if (triangles_ == LeafBlock::kMaxTriangles) return false;
         const std::uint32_t before = vertices_;
         std::uint32_t numbers = 0;
-        Bounds3 bounds;
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            const std::uint32_t number = number_of(corners[i]);
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t number = number_of(mesh_.triangles[triangle][i]);
             if (number == LeafBlock::kMaxVertices) {
                 vertices_ = before;
                 return false;
             }
             numbers |= number << 8 * i;
-            bounds.extend(corners[i]);
         }
-        words_[triangles_++] = numbers | LeafBlock::extent_bits(max_component(bounds.extent()));
+        words_[triangles_++] = numbers;
         return true;
     }
     std::uint32_t triangles() const { return triangles_; }
 
     void append(std::uint32_t first_name, std::vector<float>& data) const {
-        data.push_back(std::bit_cast<float>(triangles_ | vertices_ << 8));
-        data.push_back(std::bit_cast<float>(first_name));
-        for (const auto& axis : position_) {
-            for (std::uint32_t i = 0; i < vertices_; ++i) data.push_back(std::bit_cast<float>(axis[i]));
+        const std::size_t at = data.size(), n = vertices_;
+        data.resize(at + LeafBlock::kHeader + 3 * n + triangles_);
+        float* const out = data.data() + at;
+        out[0] = std::bit_cast<float>(triangles_ | vertices_ << 8);
+        out[1] = std::bit_cast<float>(first_name);
+        float* const values = out + LeafBlock::kHeader;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                values[axis * n + i] = mesh_.positions[vertex_[i]][static_cast<int>(axis)];
         }
-        for (std::uint32_t i = 0; i < triangles_; ++i) data.push_back(std::bit_cast<float>(words_[i]));
+        for (std::size_t i = 0; i < triangles_; ++i)
+            values[3 * n + i] = std::bit_cast<float>(words_[i] | LeafBlock::extent_bits(extent(words_[i])));
     }
 
 private:
-    /// By their bits: 0 and -0 are two. kMaxVertices where there is no room.
-    std::uint32_t number_of(const Vec3& vertex) {
-        const auto bits = std::bit_cast<std::array<std::uint32_t, 3>>(vertex);
+    /// kMaxVertices where there is no room.
+    std::uint32_t number_of(std::uint32_t vertex) {
         for (std::uint32_t i = 0; i < vertices_; ++i) {
-            if (position_[0][i] == bits[0] && position_[1][i] == bits[1] && position_[2][i] == bits[2]) return i;
+            if (vertex_[i] == vertex) return i;
         }
         if (vertices_ == LeafBlock::kMaxVertices) return vertices_;
-        for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][vertices_] = bits[axis];
+        vertex_[vertices_] = vertex;
         return vertices_++;
     }
+    float extent(std::uint32_t word) const {
+        Bounds3 bounds;
+        for (int i = 0; i < 3; ++i) bounds.extend(mesh_.positions[vertex_[word >> 8 * i & 0xff]]);
+        return max_component(bounds.extent());
+    }
 
+    const TriangleMesh& mesh_;
     std::uint32_t triangles_ = 0, vertices_ = 0;
-    std::array<std::array<std::uint32_t, LeafBlock::kMaxVertices>, 3> position_;
-    std::array<std::uint32_t, LeafBlock::kMaxTriangles> words_;
+    std::array<std::uint32_t, LeafBlock::kMaxVertices> vertex_;  ///< In the mesh.
+    std::array<std::uint32_t, LeafBlock::kMaxTriangles> words_;  ///< As in the block, without extents.
 };
 
 void append_runs(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
@@ -67,7 +71,10 @@ void append_runs(const TriangleMesh& mesh, std::span<const std::uint32_t> triang
     data.resize(at + kTriangleRuns * n);
     data[at - 2] = std::bit_cast<float>(static_cast<std::uint32_t>(n));
     data[at - 1] = std::bit_cast<float>(first_name);
-    for (std::size_t i = 0; i < n; ++i) write_triangle(corners_of(mesh, triangles[i]), i, n, data.data() + at);
+    for (std::size_t i = 0; i < n; ++i) {
+        const glm::uvec3& t = mesh.triangles[triangles[i]];
+        write_triangle({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, i, n, data.data() + at);
+    }
 }
 
 }  // namespace
@@ -77,8 +84,8 @@ void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t>
     // A block that is less full than this costs more tests than it saves memory.
     constexpr std::size_t kFull = 12;
     while (!triangles.empty()) {
-        SharedBlock block;
-        while (block.triangles() < triangles.size() && block.add(corners_of(mesh, triangles[block.triangles()]))) {
+        SharedBlock block(mesh);
+        while (block.triangles() < triangles.size() && block.add(triangles[block.triangles()])) {
         }
         std::size_t n = block.triangles();
         if (n == triangles.size() || n >= kFull) {

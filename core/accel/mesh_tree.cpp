@@ -38,6 +38,9 @@ std::vector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
     };
     parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !control.cancelled; ++i) {
+            std::size_t triangles = 0;
+            each_leaf(i, [&](const KdNode& leaf) { triangles += leaf.count(); });
+            parts[i].data.reserve(5 * triangles);
             each_leaf(i, [&](KdNode& leaf) {
                 const std::uint32_t first = leaf.first();
                 leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].data.size()), leaf.count());

@@ -116,7 +116,7 @@ TEST(LeafBlocks, AreRunsWhereTrianglesShareTooLittle) {
     }
 }
 
-TEST(LeafBlocks, TellVerticesApartByTheirBits) {
+TEST(LeafBlocks, KeepThePositionsOfVerticesBitByBit) {
     TriangleMesh mesh;
     const float nan = std::nanf("");
     mesh.positions = {Vec3(0), Vec3(-0.0f, 0, 0), Vec3(nan, 0, 0), Vec3(0), Vec3(kInfinity, 1e-42f, -1e-42f)};
