@@ -23,6 +23,7 @@ struct WorldRays {
     /// The n (or kLanes, if that is less) rays from `ids` on. `reach` is the largest coordinate of the scene's bounds.
     HWY_INLINE WorldRays(std::span<const Ray> rays, std::span<const Hit> hits, const std::uint32_t* ids, std::size_t n,
                          float reach) {
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float));
         const FloatTag d;
         id = hn::LoadU(WordTag(), ids);
         const FourLanes from = load_fours([&](std::size_t lane) HWY_ATTR { return &rays[ids[lane]].origin.x; });

@@ -8,6 +8,8 @@
 
 #include "core/materials/bsdf_lanes-inl.h"
 
+// The rough Bsdf of dielectric.cpp: see bsdf_lanes-inl.h.
+
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 

@@ -189,7 +189,6 @@ HWY_INLINE FloatMask scattered_paths(const LobeTask& task, const InteractionLane
     store_fours(throughput.x, throughput.y, throughput.z, sample.pdf,
                 [&](std::size_t lane) HWY_ATTR { return &block.next_throughput[i + lane].x; });
     store(sample.wi, block.next_local, i);
-    store(sample.pdf, block.next_pdf, i);
     return goes_on;
 }
 

@@ -33,10 +33,10 @@ struct LobeBlock {
 
     // Found.
     Ray shadow_ray[kSize], next_ray[kSize];
-    Vec4 shadow_light[kSize], next_throughput[kSize];  ///< The fourth says nothing.
-    Rows next_local;                                   ///< The direction in the frame of the shading normal.
-    Row next_pdf;                                      ///< As BsdfSample has it.
-    std::uint64_t casts_shadow_ray, goes_on;           ///< One bit a path.
+    Vec4 shadow_light[kSize];                 ///< The fourth says nothing.
+    Vec4 next_throughput[kSize];              ///< The fourth is the density, as BsdfSample has it.
+    Rows next_local;                          ///< The direction in the frame of the shading normal.
+    std::uint64_t casts_shadow_ray, goes_on;  ///< One bit a path.
 };
 
 /// All paths of a batch, of which a block names some.

@@ -48,17 +48,17 @@ void PathTracer::shade_block(PathBatch& batch, PackedBsdf::Kind kind, int bounce
     for (std::uint64_t rest = block.goes_on; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
         const std::size_t from = block.state[i];
+        const float pdf = block.next_throughput[i].w;
         PathState& state = batch.next_states.emplace_back(batch.states[from]);
         if (light_tracer_) {
             const Ray& ray = batch.rays[from];
             const Interaction at(batch.points[from], scene_.packed_material(batch.hits[from].object), -ray.direction);
-            const BsdfSample sample{
-                .wi = vec(block.next_local, i), .pdf = block.next_pdf[i], .specular = is_delta(kind)};
+            const BsdfSample sample{.wi = vec(block.next_local, i), .pdf = pdf, .specular = is_delta(kind)};
             state.light_ratio = light_ratio(state, ray, at, block.next_ray[i].direction, sample, bounce);
         }
         state.throughput = Color(block.next_throughput[i]);
         state.receiver = block.light.receiver(i);
-        state.bsdf_pdf = is_delta(kind) ? 0 : block.next_pdf[i];
+        state.bsdf_pdf = is_delta(kind) ? 0 : pdf;
         batch.next_rays.push_back(block.next_ray[i]);
     }
     block.size = 0;
