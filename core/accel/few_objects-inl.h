@@ -7,6 +7,7 @@
 #endif
 
 #include "core/accel/object_lanes-inl.h"
+#include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -24,20 +25,19 @@ struct WorldRays {
                          float reach) {
         static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float));
         const FloatTag d;
-        const hn::RebindToSigned<FloatTag> di;
         id = hn::LoadU(WordTag(), ids);
-        const auto index = hn::BitCast(di, id);
-        const auto field = [&](int offset) HWY_ATTR {
-            return hn::GatherIndex(d, &rays.data()->origin.x + offset, hn::ShiftLeft<3>(index));
-        };
-        for (int axis = 0; axis < 3; ++axis) {
-            origin[axis] = field(axis);
-            direction[axis] = field(4 + axis);
-        }
-        t_min = field(3);
-        const Floats t_max = field(7);
-        const auto sixfold = hn::Add(hn::ShiftLeft<2>(index), hn::ShiftLeft<1>(index));
-        t_end = hn::Min(t_max, hn::GatherIndex(d, &hits.data()->t, sixfold));
+        const FourLanes from = load_fours([&](std::size_t lane) HWY_ATTR { return &rays[ids[lane]].origin.x; });
+        const FourLanes along = load_fours([&](std::size_t lane) HWY_ATTR { return &rays[ids[lane]].direction.x; });
+        const FourLanes hit = load_fours([&](std::size_t lane) HWY_ATTR { return &hits[ids[lane]].t; });
+        origin[0] = from.x;
+        origin[1] = from.y;
+        origin[2] = from.z;
+        direction[0] = along.x;
+        direction[1] = along.y;
+        direction[2] = along.z;
+        t_min = from.w;
+        const Floats t_max = along.w;
+        t_end = hn::Min(t_max, hit.x);
         const Floats zero = hn::Zero(d);
         const auto sum_of_nothing = [&](const Floats(&v)[3])
                                         HWY_ATTR { return v[0] * zero + v[1] * zero + v[2] * zero; };
@@ -58,7 +58,7 @@ public:
     FewObjects(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits, std::vector<MeshCandidate>& meshes)
         : scene_(scene), leaf_(scene.leaves->apart), rays_(rays), hits_(hits), meshes_(meshes) {
         const Bounds3& bounds = scene.all_bounds;
-        reach_ = max_component(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
+        reach_ = rayuela::max_component(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
     }
 
     /// `ids`: at most kBlockRays, kLanes more may be read. Meshes are noted down for later, all other shapes tested.
@@ -81,16 +81,15 @@ private:
     HWY_INLINE void sort_by_axis(std::span<const std::uint32_t> ids) {
         const FloatTag d;
         const WordTag dw;
-        const hn::RebindToSigned<FloatTag> di;
+        alignas(64) std::uint32_t names[kLanes];
         std::fill_n(size_, 3, 0);
         for (std::size_t i = 0; i < ids.size(); i += kLanes) {
             const FloatMask all = hn::FirstN(d, ids.size() - i);
             const Words id = hn::IfThenElseZero(hn::RebindMask(dw, all), hn::LoadU(dw, ids.data() + i));
-            const auto index = hn::ShiftLeft<3>(hn::BitCast(di, id));
-            const auto size = [&](int axis) HWY_ATTR {
-                return hn::Abs(hn::GatherIndex(d, &rays_.data()->direction.x + axis, index));
-            };
-            const Floats x = size(0), y = size(1), z = size(2);
+            hn::Store(id, dw, names);
+            const auto direction =
+                load_fours([&](std::size_t lane) HWY_ATTR { return &rays_[names[lane]].direction.x; });
+            const Floats x = hn::Abs(direction.x), y = hn::Abs(direction.y), z = hn::Abs(direction.z);
             const FloatMask x_longest = hn::And(hn::Gt(x, y), hn::Gt(x, z));
             const FloatMask y_longest = hn::AndNot(x_longest, hn::Gt(y, z));
             const FloatMask of[3] = {x_longest, y_longest, hn::Not(hn::Or(x_longest, y_longest))};
@@ -143,30 +142,33 @@ private:
     HWY_INLINE void decide_triangles(std::uint32_t dominant_axis) {
         const DoubleTag dd;
         const hn::Rebind<float, DoubleTag> df;
-        const hn::Rebind<std::int32_t, DoubleTag> dw;
-        const Turn turn(dominant_axis);
-        const std::uint32_t x = turn.x, y = turn.y, z = turn.z;
-        const std::size_t n = leaf_.triangles;
+        using HalfFloats = hn::Vec<decltype(df)>;
+        const auto [x, y, z] = Turn(dominant_axis);
         for (std::size_t i = 0; i < count_; i += kDoubles) {
             // Past the last candidate lie earlier ones or zeros, whose results are dropped.
-            const auto id = hn::LoadU(dw, reinterpret_cast<const std::int32_t*>(ray_ + i));
-            const auto name = hn::LoadU(dw, reinterpret_cast<const std::int32_t*>(triangle_ + i));
-            const auto field = [&](std::uint32_t offset) HWY_ATTR {
-                return hn::GatherIndex(df, &rays_.data()->origin.x + offset, hn::ShiftLeft<3>(id));
-            };
-            const auto ray = [&](std::uint32_t offset) HWY_ATTR { return hn::PromoteTo(dd, field(offset)); };
-            const auto vertex = [&](std::uint32_t corner, std::uint32_t axis) HWY_ATTR {
-                return hn::PromoteTo(dd, hn::GatherIndex(df, runs() + (3 * corner + axis) * n, name));
-            };
-            const Doubles inverse_z = hn::Div(hn::Set(dd, 1), ray(4 + z));
-            const ExactHits hits =
-                intersect(ExactRays{ray(x), ray(y), ray(z), hn::Mul(ray(4 + x), inverse_z),
-                                    hn::Mul(ray(4 + y), inverse_z), inverse_z},
-                          ExactTriangles{vertex(0, x), vertex(0, y), vertex(0, z), vertex(1, x), vertex(1, y),
-                                         vertex(1, z), vertex(2, x), vertex(2, y), vertex(2, z)});
+            HalfFloats origin[4], direction[4], corners[3][4];
+            load_turned(
+                df, [&](std::size_t lane) HWY_ATTR { return &rays_[ray_[i + lane]].origin.x; }, origin);
+            load_turned(
+                df, [&](std::size_t lane) HWY_ATTR { return &rays_[ray_[i + lane]].direction.x; }, direction);
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const auto at = [&](std::size_t lane) HWY_ATTR {
+                    return scene_.leaves->apart_corners[triangle_[i + lane]].data() + 4 * corner;
+                };
+                load_turned(df, at, corners[corner]);
+            }
+            const auto exact = [&](HalfFloats value) HWY_ATTR { return hn::PromoteTo(dd, value); };
+            const auto vertex = [&](std::size_t corner, std::uint32_t axis)
+                                    HWY_ATTR { return exact(corners[corner][axis]); };
+            const Doubles inverse_z = hn::Div(hn::Set(dd, 1), exact(direction[z]));
+            const ExactHits hits = intersect(
+                ExactRays{exact(origin[x]), exact(origin[y]), exact(origin[z]), hn::Mul(exact(direction[x]), inverse_z),
+                          hn::Mul(exact(direction[y]), inverse_z), inverse_z},
+                ExactTriangles{vertex(0, x), vertex(0, y), vertex(0, z), vertex(1, x), vertex(1, y), vertex(1, z),
+                               vertex(2, x), vertex(2, y), vertex(2, z)});
             const auto t = hn::DemoteTo(df, hits.t);
-            const auto in_range =
-                hn::And(hn::And(hn::Ge(t, field(3)), hn::Le(t, field(7))), hn::Lt(hn::Abs(t), hn::Set(df, kInfinity)));
+            const auto in_range = hn::And(hn::And(hn::Ge(t, origin[3]), hn::Le(t, direction[3])),
+                                          hn::Lt(hn::Abs(t), hn::Set(df, kInfinity)));
             alignas(64) double ts[kDoubles], us[kDoubles], vs[kDoubles];
             hn::Store(hits.t, dd, ts);
             hn::Store(hits.u, dd, us);

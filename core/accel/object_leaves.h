@@ -3,6 +3,7 @@
 #include "core/accel/kd_tree.h"
 #include "core/accel/traced_object.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct ObjectLeaves {
     std::vector<ObjectLeaf> leaves;    ///< One a reference of the tree; that of a leaf stands at its first().
     std::vector<float> triangle_runs;  ///< See MeshTree::leaf_data.
     std::vector<ObjectTriangle> triangles;
+    /// Of those apart: three corners, each with a float that says nothing.
+    std::vector<std::array<float, 12>> apart_corners;
     std::vector<float> sphere_runs;      ///< For a leaf of n spheres: n times x, n times y, z and radius.
     std::vector<std::uint32_t> spheres;  ///< Objects.
     std::vector<std::uint32_t> others;   ///< Objects of all other shapes, meshes among them.

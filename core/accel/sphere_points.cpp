@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "core/accel/surface_lanes-inl.h"
+#include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -57,31 +58,28 @@ HWY_INLINE Doubles squared_distance_excess(const DoubleAxes& a, const DoubleAxes
 /// Up to kDoubles of them.
 HWY_INLINE void points_of(const SphereD* spheres, std::span<const SphereHit> found, const Ray* rays, const Hit* hits,
                           SurfacePoint* points) {
-    static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(Hit) == 6 * sizeof(float) &&
-                  sizeof(SphereD) == 4 * sizeof(double));
+    static_assert(sizeof(SphereD) == 4 * sizeof(double));
     const DoubleTag dd;
     const hn::Rebind<float, DoubleTag> df;
-    alignas(64) std::int64_t sphere_field[kDoubles];
-    alignas(64) std::int32_t ray_field[kDoubles], hit_field[kDoubles];
-    for (std::size_t k = 0; k < kDoubles; ++k) {
-        const SphereHit& one = found[std::min(k, found.size() - 1)];
-        sphere_field[k] = 4 * static_cast<std::int64_t>(one.sphere);
-        ray_field[k] = static_cast<std::int32_t>(8 * one.ray);
-        hit_field[k] = static_cast<std::int32_t>(6 * one.ray);
-    }
-    const auto gather = [&](const float* base, const std::int32_t* fields) HWY_ATTR {
-        const auto index = hn::Load(hn::Rebind<std::int32_t, DoubleTag>(), fields);
-        return hn::PromoteTo(dd, hn::GatherIndex(df, base, index));
+    const auto one = [&](std::size_t lane) { return found[std::min(lane, found.size() - 1)]; };
+    hn::Vec<decltype(df)> origin[4], direction[4], hit[4];
+    load_turned(
+        df, [&](std::size_t lane) HWY_ATTR { return &rays[one(lane).ray].origin.x; }, origin);
+    load_turned(
+        df, [&](std::size_t lane) HWY_ATTR { return &rays[one(lane).ray].direction.x; }, direction);
+    load_turned(
+        df, [&](std::size_t lane) HWY_ATTR { return &hits[one(lane).ray].t; }, hit);
+    Doubles place[2], rest[2];
+    load_turned(
+        dd, [&](std::size_t lane) HWY_ATTR { return &spheres[one(lane).sphere].center.x; }, place);
+    load_turned(
+        dd, [&](std::size_t lane) HWY_ATTR { return &spheres[one(lane).sphere].center.z; }, rest);
+    const DoubleAxes center{place[0], place[1], rest[0]};
+    const Doubles radius = rest[1], t = hn::PromoteTo(dd, hit[0]);
+    const auto advanced = [&](int axis) HWY_ATTR {
+        return hn::Add(hn::PromoteTo(dd, origin[axis]), hn::Mul(t, hn::PromoteTo(dd, direction[axis])));
     };
-    const auto of_ray = [&](std::size_t field) HWY_ATTR { return gather(&rays->origin.x + field, ray_field); };
-    const auto of_sphere = [&](std::size_t field) HWY_ATTR {
-        const auto index = hn::Load(hn::RebindToSigned<DoubleTag>(), sphere_field);
-        return hn::GatherIndex(dd, &spheres->center.x + field, index);
-    };
-    const DoubleAxes center{of_sphere(0), of_sphere(1), of_sphere(2)};
-    const Doubles radius = of_sphere(3), t = gather(&hits->t, hit_field);
-    const DoubleAxes along{hn::Add(of_ray(0), hn::Mul(t, of_ray(4))), hn::Add(of_ray(1), hn::Mul(t, of_ray(5))),
-                           hn::Add(of_ray(2), hn::Mul(t, of_ray(6)))};
+    const DoubleAxes along{advanced(0), advanced(1), advanced(2)};
     const DoubleAxes from_center = along - center;
     const Doubles distance = hn::Sqrt(dot(from_center, from_center));
     const DoubleAxes n{hn::Div(from_center.x, distance), hn::Div(from_center.y, distance),

@@ -9,6 +9,7 @@
 #include "core/shapes/intersect_sphere.h"
 
 #include "core/accel/kd_lanes-inl.h"
+#include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -92,34 +93,37 @@ template <typename Accept>
 HWY_INLINE void SphereCandidates::decide(std::span<const Ray> rays, std::span<const Hit> hits, const SphereD* spheres,
                                          const Accept& accept) {
     const DoubleTag dd;
-    const hn::RebindToSigned<DoubleTag> di;
     const hn::Rebind<float, DoubleTag> df;
-    static_assert(sizeof(SphereD) == 4 * sizeof(double) && sizeof(Ray) == 8 * sizeof(float));
+    static_assert(sizeof(SphereD) == 4 * sizeof(double));
     const auto dot = [](Doubles ax, Doubles ay, Doubles az, Doubles bx, Doubles by, Doubles bz)
                          HWY_ATTR { return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz)); };
     for (std::size_t i = 0; i < size_; i += kDoubles) {
-        alignas(64) std::int64_t sphere[kDoubles];
-        alignas(64) std::int32_t ray_field[kDoubles];
+        const Ray* ray[kDoubles];
+        const SphereD* sphere[kDoubles];
         alignas(64) float t_min[kDoubles], t_max[kDoubles];
         for (std::size_t k = 0; k < kDoubles; ++k) {
             // Past the last stand earlier ones or zeros, whose results are dropped.
             const std::size_t at = std::min(i + k, size_ - 1);
             const std::uint32_t id = ray_[at];
-            sphere[k] = 4 * static_cast<std::int64_t>(name_[at]);
-            ray_field[k] = static_cast<std::int32_t>(8 * id);
+            sphere[k] = spheres + name_[at];
+            ray[k] = &rays[id];
             t_min[k] = rays[id].t_min;
             t_max[k] = std::min(rays[id].t_max, hits[id].t);
         }
-        const auto ray = [&](std::size_t field) HWY_ATTR {
-            const auto index = hn::Load(hn::Rebind<std::int32_t, DoubleTag>(), ray_field);
-            return hn::PromoteTo(dd, hn::GatherIndex(df, &rays.data()->origin.x + field, index));
-        };
-        const auto of_sphere = [&](std::size_t field) HWY_ATTR {
-            return hn::GatherIndex(dd, &spheres->center.x + field, hn::Load(di, sphere));
-        };
-        const Doubles dx = ray(4), dy = ray(5), dz = ray(6), radius = of_sphere(3);
-        const Doubles fx = hn::Sub(ray(0), of_sphere(0)), fy = hn::Sub(ray(1), of_sphere(1)),
-                      fz = hn::Sub(ray(2), of_sphere(2));
+        hn::Vec<decltype(df)> origin[4], direction[4];
+        load_turned(
+            df, [&](std::size_t lane) HWY_ATTR { return &ray[lane]->origin.x; }, origin);
+        load_turned(
+            df, [&](std::size_t lane) HWY_ATTR { return &ray[lane]->direction.x; }, direction);
+        Doubles center[2], rest[2];
+        load_turned(
+            dd, [&](std::size_t lane) HWY_ATTR { return &sphere[lane]->center.x; }, center);
+        load_turned(
+            dd, [&](std::size_t lane) HWY_ATTR { return &sphere[lane]->center.z; }, rest);
+        const auto exact = [&](hn::Vec<decltype(df)> value) HWY_ATTR { return hn::PromoteTo(dd, value); };
+        const Doubles dx = exact(direction[0]), dy = exact(direction[1]), dz = exact(direction[2]), radius = rest[1];
+        const Doubles fx = hn::Sub(exact(origin[0]), center[0]), fy = hn::Sub(exact(origin[1]), center[1]),
+                      fz = hn::Sub(exact(origin[2]), rest[0]);
         const Doubles a = dot(dx, dy, dz, dx, dy, dz), b = hn::Neg(dot(fx, fy, fz, dx, dy, dz));
         const Doubles s = hn::Div(b, a);
         const Doubles px = hn::Add(fx, hn::Mul(s, dx)), py = hn::Add(fy, hn::Mul(s, dy)),

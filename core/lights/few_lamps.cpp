@@ -127,13 +127,29 @@ HWY_INLINE LampPoints sphere_points(const Vec3Lanes& origin, Floats size, const 
             one};
 }
 
+using LampIndices = hn::Vec<hn::RebindToSigned<FloatTag>>;
+
+/// The numbers of the row that the indices say: shuffled where a register holds all of it, as a gather takes longer.
+template <typename Tag>
+HWY_INLINE hn::Vec<Tag> looked_up(Tag d, const FewLamps::Row& row, LampIndices index) {
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(d) == FewLamps::kMost) {
+        return hn::TableLookupLanes(hn::LoadU(d, row.data()), hn::IndicesFromVec(d, index));
+    } else if constexpr (hn::MaxLanes(d) == 2 * FewLamps::kMost) {
+        const auto table = hn::ZeroExtendVector(d, hn::LoadU(hn::Half<Tag>(), row.data()));
+        return hn::TableLookupLanes(table, hn::IndicesFromVec(d, index));
+    }
+#endif
+    return hn::GatherIndex(d, row.data(), index);
+}
+
 /// The lamp of each lane.
 class ChosenLamps {
 public:
     HWY_INLINE ChosenLamps(const FewLamps& lamps, const Choice& choice) : lamps_(lamps), lamp_(choice.lamp) {}
 
     HWY_INLINE Floats of(const FewLamps::Row& row) const {
-        return lamps_.count == 1 ? all_lanes(row[0]) : hn::GatherIndex(FloatTag(), row.data(), lamp_);
+        return lamps_.count == 1 ? all_lanes(row[0]) : looked_up(FloatTag(), row, lamp_);
     }
     HWY_INLINE Vec3Lanes of(const FewLamps::Rows& rows) const { return {of(rows[0]), of(rows[1]), of(rows[2])}; }
     HWY_INLINE FloatMask is(const FewLamps::Row& row) const { return hn::Ne(of(row), hn::Zero(FloatTag())); }

@@ -13,6 +13,10 @@ constexpr GgxTables kTables{
 
 }  // namespace
 
+const GgxTables& ggx_tables() {
+    return kTables;
+}
+
 GgxAlbedo ggx_albedo(float mu, float alpha) {
     mu = clamp_unit(mu);
     if (alpha < kSmoothAlpha) return {1, schlick_weight(mu)};

@@ -41,6 +41,8 @@ struct GgxTables {
     }
 };
 
+const GgxTables& ggx_tables();
+
 /// Linear interpolation at `x` in [0, 1].
 inline float interpolate(const GgxTables::Row& row, float x) {
     const float scaled = x * (GgxTables::kSide - 1);

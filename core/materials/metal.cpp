@@ -21,7 +21,8 @@ MetalBsdf Metal::bsdf(const Vec2& uv) const {
     bsdf.ggx.alpha = alpha_of(evaluate(roughness, uv));
     bsdf.multiscatter = multiscatter && !bsdf.ggx.is_smooth();
     if (bsdf.multiscatter) {
-        bsdf.lost_reflectance = lost_reflectance(bsdf.reflectance, ggx_average_albedo(bsdf.ggx.alpha).total);
+        bsdf.average_albedo = ggx_average_albedo(bsdf.ggx.alpha).total;
+        bsdf.lost_reflectance = lost_reflectance(bsdf.reflectance, bsdf.average_albedo);
     }
     return bsdf;
 }
@@ -33,7 +34,7 @@ BsdfValue MetalBsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
     if (!multiscatter) return {reflectance * (ggx.g1(i) * facet_pdf), facet_pdf};
 
     const float total = ggx_albedo(o.z, ggx.alpha).total;
-    const float lost = energy_lobe(total, ggx_albedo(i.z, ggx.alpha).total, ggx_average_albedo(ggx.alpha).total);
+    const float lost = energy_lobe(total, ggx_albedo(i.z, ggx.alpha).total, average_albedo);
     const float cosine_pdf = kInvPi * i.z;
     return {reflectance * (ggx.g2_over_g1(o, i) * facet_pdf) + lost_reflectance * (lost * cosine_pdf),
             glm::mix(cosine_pdf, facet_pdf, facet_probability(*this, total))};

@@ -15,6 +15,7 @@ struct MetalBsdf {
     Ggx ggx;
     bool multiscatter = false;
     Color lost_reflectance{0};  ///< Of the light that leaves after more than one bounce, over what a bounce loses.
+    float average_albedo = 1;   ///< ggx_average_albedo, where `multiscatter`.
 
     BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const;
     std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u) const;

@@ -1,15 +1,12 @@
 #include "core/materials/principled.h"
 
 #include "core/materials/fresnel.h"
-#include "core/materials/ggx_albedo.h"
 #include "core/math/sampling.h"
 
 #include <array>
 
 namespace rayuela {
 namespace {
-
-constexpr float kCoatF0 = 0.04f;  // an index of 1.5, as KHR_materials_clearcoat has it
 
 template <typename T>
 T schlick(const T& f0, float cosine) {
@@ -61,13 +58,14 @@ PrincipledBsdf Principled::bsdf(const Vec2& uv) const {
     const float metal = clamp_unit(evaluate(metallic, uv)), through = clamp_unit(evaluate(transmission, uv));
     PrincipledBsdf b;
     b.facets.alpha = alpha_of(evaluate(roughness, uv));
+    b.average = ggx_average_albedo(b.facets.alpha);
     b.dielectric_f0 = fresnel_normal(ior);
     b.facets_f0 = glm::mix(Color(b.dielectric_f0), base, metal);
     b.diffuse = (1 - metal) * (1 - through) * base;
     b.transmission = (1 - metal) * through * base;
     if (metal > 0 && !b.facets.is_smooth()) {
         const Color mean_fresnel = base + (1.0f - base) / 21.0f;
-        b.metal_lost = metal * lost_reflectance(mean_fresnel, ggx_average_albedo(b.facets.alpha).total);
+        b.metal_lost = metal * lost_reflectance(mean_fresnel, b.average.total);
     }
     b.coat = clamp_unit(clearcoat);
     b.coat_facets.alpha = alpha_of(clearcoat_roughness);
@@ -92,7 +90,7 @@ BsdfValue PrincipledBsdf::evaluate(const Vec3& wo, const Vec3& wi) const {
     const Vec3 m = half_vector(o, i);             // of light that passes: as if it had been reflected
     const float o_m = 0.5f * glm::length(o + i);  // the same for wo and wi to the last bit
     const Split split(*this, o.z);
-    const GgxAlbedo facets_i = ggx_albedo(i.z, facets.alpha), average = ggx_average_albedo(facets.alpha);
+    const GgxAlbedo facets_i = ggx_albedo(i.z, facets.alpha);
     const float lost = energy_lobe(split.facets.total, facets_i.total, average.total);
     const float cosine_pdf = kInvPi * i.z;
     const float facet_pdf = facets.is_smooth() ? 0.0f : facets.reflection_pdf(o, m);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/materials/bsdf_sample.h"
+#include "core/materials/ggx_albedo.h"
 #include "core/materials/microfacet.h"
 #include "core/materials/value.h"
 #include "core/math/field.h"
@@ -8,6 +9,9 @@
 #include <optional>
 
 namespace rayuela {
+
+/// Reflectance of the coat at normal incidence: an index of 1.5, as KHR_materials_clearcoat has it.
+inline constexpr float kCoatF0 = 0.04f;
 
 /// A clear coat over GGX facets (Schlick) over a body that scatters light back or lets it through, in proportion to what
 /// the layers above leave: a white one reflects and transmits all light. The surface is thin and two-sided: light passes
@@ -22,6 +26,7 @@ struct PrincipledBsdf {
     Color transmission{0};
     float coat = 0;
     Ggx coat_facets;
+    GgxAlbedo average;  ///< ggx_average_albedo of `facets`.
 
     BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const;
     std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u) const;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/accel/surface_point.h"
-#include "core/lights/light_importance.h"
 #include "core/math/sampler.h"
 #include "core/render/interaction.h"
 #include "core/render/lobe_block.h"
+#include "core/render/path_state.h"
 
 #include <array>
 #include <cstdint>
@@ -17,16 +17,6 @@ namespace rayuela {
 struct PathId {
     std::uint32_t pixel = 0;  ///< Row-major, from the upper left.
     std::uint32_t sample = 0;
-};
-
-/// What a path carries from one bounce to the next.
-struct PathState {
-    Color throughput{1};
-    std::uint32_t path = 0;  ///< Which of the batch.
-    std::uint32_t part = 0;  ///< Which sampler and which sum of the batch: the path's own unless it has been split.
-    LightReceiver receiver;  ///< At the last scattering, not offset.
-    float light_ratio = 0;   ///< See LightTracer; 0 where no path from a lamp could be the same.
-    float bsdf_pdf = 0;  ///< Density with which the last scattering chose the direction; 0 for camera and delta lobes.
 };
 
 struct RayCounts {
@@ -83,7 +73,7 @@ struct PathBatch {
     std::vector<std::uint32_t> shadow_parts;
     std::vector<std::uint8_t> blocked;
 
-    std::array<LobeBlock, std::size(SingleLobe::kKinds)> lobes{};  ///< One a kind; their states are of `states`.
+    std::array<LobeBlock, std::size(PackedBsdf::kKinds)> lobes{};  ///< One a kind; their states are of `states`.
     SurfaceBlock surfaces;
 
     RayCounts counts;  ///< Of all batches since the worker set them to 0.

@@ -160,11 +160,11 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         if (in_block(state, material, bounce)) {
             if (last) continue;
             if (!varies<kVaries>(material)) {
-                add_to_block(batch, i, *material.lobe, bounce);
+                add_to_block(batch, i, *material.packed, bounce);
                 continue;
             }
-            if (const auto lobe = single_lobe(material.material, batch.points[i].uv)) {
-                add_to_block(batch, i, *lobe, bounce);
+            if (const auto lobe = packed_bsdf(material.material, batch.points[i].uv)) {
+                add_copy_to_block(batch, i, *lobe, bounce);
                 continue;
             }
         }
@@ -175,7 +175,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
     shade_surfaces(batch, bounce, last);
-    for (const SingleLobe::Kind kind : SingleLobe::kKinds) shade_block(batch, kind, bounce);
+    for (const PackedBsdf::Kind kind : PackedBsdf::kKinds) shade_block(batch, kind, bounce);
     batch.states.swap(batch.next_states);
     batch.rays.swap(batch.next_rays);
 }

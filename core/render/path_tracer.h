@@ -72,9 +72,10 @@ private:
     template <bool kVaries>
     bool varies(const PackedMaterial& material) const;
     bool in_block(const PathState& state, const PackedMaterial& material, int bounce) const;
-    void add_to_block(PathBatch& batch, std::size_t i, const SingleLobe& lobe, int bounce) const;
-    void shade_block(PathBatch& batch, SingleLobe::Kind kind, int bounce) const;
-    LobeTask lobe_task(SingleLobe::Kind kind, int bounce) const;
+    void add_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const;
+    void add_copy_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const;
+    void shade_block(PathBatch& batch, PackedBsdf::Kind kind, int bounce) const;
+    LobeTask lobe_task(PackedBsdf::Kind kind, int bounce) const;
     int roulette_start(bool specular) const;
     float light_ratio(const PathState& state, const Ray& ray, const Interaction& at, const Vec3& wi,
                       const BsdfSample& sample, int bounce) const;

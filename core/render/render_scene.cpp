@@ -15,14 +15,15 @@ namespace {
 PackedMaterial pack(const Material& material) {
     bool textured = false;
     for_each_texture(material, [&](const auto& texture) { textured |= texture != nullptr; });
+    const bool emissive = is_emissive(material);
     return {.material = material,
             .bsdf = make_bsdf(material, Vec2(0)),
             .textured = textured,
-            .emissive = is_emissive(material),
+            .emissive = emissive,
             .smooth = !is_specular_only(material),
             .transmits = transmits(material),
             .delta = has_delta_lobe(material),
-            .lobe = single_lobe(material, Vec2(0))};
+            .packed = emissive ? std::nullopt : packed_bsdf(material, Vec2(0))};
 }
 
 bool same_ids(const Scene& a, const Scene& b) {

@@ -6,7 +6,7 @@
 #include "core/lights/light_emission.h"
 #include "core/lights/light_table.h"
 #include "core/materials/bsdf.h"
-#include "core/materials/single_lobe.h"
+#include "core/materials/packed_bsdf.h"
 #include "core/math/result.h"
 #include "core/render/features.h"
 #include "core/render/shortcuts.h"
@@ -27,8 +27,9 @@ struct PackedMaterial {
     bool emissive = false;
     bool smooth = true;  ///< Light samples can contribute.
     bool transmits = false;
-    bool delta = false;              ///< Has a delta lobe.
-    std::optional<SingleLobe> lobe;  ///< Where it is one; at texture coordinates 0 where `textured`.
+    bool delta = false;  ///< Has a delta lobe.
+    std::optional<PackedBsdf>
+        packed;  ///< Where it is one and emits nothing; at texture coordinates 0 where `textured`.
 };
 
 /// What the kernels read, derived from a Scene: flattened objects, packed materials, trees, lights. Immutable; parts that

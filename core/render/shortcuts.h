@@ -32,7 +32,7 @@ inline constexpr ShortcutField kShortcuts[] = {
     {"black_shadow_rays", &Shortcuts::black_shadow_rays,
      "Shadow rays are traced even where their light would be black."},
     {"lamp_blocks", &Shortcuts::lamp_blocks, "Points on lamps are chosen one by one."},
-    {"lobe_blocks", &Shortcuts::lobe_blocks, "Matte, metal and clear glass surfaces are shaded one by one."},
+    {"lobe_blocks", &Shortcuts::lobe_blocks, "Surfaces are shaded one by one."},
     {"ready_materials", &Shortcuts::ready_materials,
      "Materials are worked out at every hit, with texture coordinates."},
     {"no_sky", &Shortcuts::no_sky, "Rays that leave the scene look up a black sky."},

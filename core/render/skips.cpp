@@ -70,11 +70,11 @@ Skip lamps_one_by_one(const RenderScene& scene) {
 Skip surfaces_one_by_one(const RenderScene& scene) {
     std::uint64_t plain = 0;
     const auto objects = static_cast<std::uint32_t>(scene.accelerator().instances().size());
-    for (std::uint32_t i = 0; i < objects; ++i) plain += scene.packed_material(i).lobe.has_value();
+    for (std::uint32_t i = 0; i < objects; ++i) plain += scene.packed_material(i).packed.has_value();
     return {.name = "Surfaces one by one",
             .state = skipped_where(plain > 0),
-            .why = plain > 0 ? "Matte, metal and clear glass surfaces are shaded many at once."
-                             : "No surface is matte, metal of one bounce or clear glass.",
+            .why = plain > 0 ? "Surfaces that neither glow nor are partly polished are shaded many at once."
+                             : "All surfaces glow or are partly polished.",
             .saved = plain,
             .unit = "objects",
             .shortcut = shortcut_of(&Shortcuts::lobe_blocks)};

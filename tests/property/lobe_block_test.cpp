@@ -62,6 +62,32 @@ const Case kCases[] = {
      }},
 };
 
+/// Materials of several lobes.
+void add_layered(Scene& scene, const std::shared_ptr<const Image>& stripes) {
+    const auto add_ball = [&](const Vec3& center, const Material& material) {
+        add_object(scene, Sphere{center, 0.3f}, add_material(scene, material));
+    };
+    const ColorValue color{Color(0.9f, 0.6f, 0.3f), nullptr};
+    Principled coated{.base_color = color, .metallic = {0.6f, nullptr, 2}, .roughness = {0.4f, nullptr, 1}};
+    coated.clearcoat = 0.7f;
+    coated.clearcoat_roughness = 0.2f;
+    Principled polished = coated;
+    polished.clearcoat_roughness = 0;
+    Principled glowing = coated;
+    glowing.emissive = {Color(0.1f), nullptr};
+    add_ball(Vec3(-2.2f, 0.3f, 1.2f), coated);
+    add_ball(Vec3(-2.2f, 0.9f, 1.2f), polished);
+    add_ball(Vec3(-2.2f, 1.5f, 1.2f), glowing);
+    add_ball(Vec3(-1.5f, 0.9f, 1.4f), Principled{.base_color = color});
+    add_ball(Vec3(0.3f, 0.3f, 1.5f), Principled{.base_color = color, .transmission = {0.8f, nullptr, 0}});
+    add_ball(Vec3(0.3f, 0.9f, 1.5f), Principled{.base_color = {Color(1), stripes}, .roughness = {1, stripes, 0}});
+    add_ball(Vec3(1.2f, 0.3f, 1.6f), Principled{.base_color = color, .transmission = {1, stripes, 0}});
+    add_ball(Vec3(1.2f, 0.9f, 1.6f), Metal{color, {0.8f, nullptr, 0}, true});
+    add_ball(Vec3(2, 0.3f, 1.5f), Metal{color, {1, stripes, 0}, true});
+    add_ball(Vec3(2, 0.9f, 1.5f), Dielectric{1.5f, color, {0.3f, nullptr, 0}});
+    add_ball(Vec3(2, 1.5f, 1.5f), Dielectric{0.8f, color, {1, stripes, 0}});
+}
+
 Scene plain_scene(const Case& lit, SamplerKind sampler) {
     Scene scene = empty_scene(45, 31);  // Blocks that are not full.
     scene.camera.position = Vec3(0, 2.5f, 7);
@@ -92,6 +118,7 @@ Scene plain_scene(const Case& lit, SamplerKind sampler) {
                add_material(scene, Diffuse{{Color(1), stripes}}));
     add_object(scene, Quad{Vec3(3, 0, -1), Vec3(0, 2, 0), Vec3(-1, 0, -1)},
                add_material(scene, Metal{{Color(1), nullptr}, {1, stripes, 0}}));
+    add_layered(scene, stripes);
     lit.light(scene, lamp);
     return scene;
 }

@@ -1,32 +1,18 @@
 // Compiled once for each set of instructions (Google Highway), hence no plain include guard.
-#if defined(RAYUELA_CORE_MATERIALS_SINGLE_LOBE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYUELA_CORE_MATERIALS_SINGLE_LOBE_LANES_INL_H_
-#undef RAYUELA_CORE_MATERIALS_SINGLE_LOBE_LANES_INL_H_
+#if defined(RAYUELA_CORE_MATERIALS_MICROFACET_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYUELA_CORE_MATERIALS_MICROFACET_LANES_INL_H_
+#undef RAYUELA_CORE_MATERIALS_MICROFACET_LANES_INL_H_
 #else
-#define RAYUELA_CORE_MATERIALS_SINGLE_LOBE_LANES_INL_H_
+#define RAYUELA_CORE_MATERIALS_MICROFACET_LANES_INL_H_
 #endif
 
 #include "core/math/double_lanes-inl.h"
 #include "core/math/vec_lanes-inl.h"
 
-// The Bsdfs that are a SingleLobe, one a lane: the operations of microfacet.h, fresnel.h, metal.cpp and dielectric.cpp in
-// their order, and so the same bits. Each lobe has
-//     evaluate(wo, wi)         where wo and wi are on the same side; not for deltas
-//     sample(wo, numbers)      drawing numbers.lobe() and numbers.direction() where it needs them
+// microfacet.h and fresnel.h, one surface a lane: the same operations in the same order, and so the same bits.
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
-
-struct BsdfValueLanes {
-    Vec3Lanes value;
-    Floats pdf;
-};
-
-struct BsdfSampleLanes {
-    Vec3Lanes wi, weight;
-    Floats pdf;
-    FloatMask there;
-};
 
 HWY_INLINE FloatMask positive(Floats x) {
     return hn::Gt(x, hn::Zero(FloatTag()));
@@ -37,6 +23,16 @@ HWY_INLINE FloatMask below_zero(Floats x) {
 HWY_INLINE FloatMask finite(Floats x) {
     return hn::Lt(hn::Abs(x), all_lanes(kInfinity));
 }
+HWY_INLINE FloatMask finite(const Vec3Lanes& v) {
+    return hn::And(finite(v.x), hn::And(finite(v.y), finite(v.z)));
+}
+HWY_INLINE Floats clamp_unit(Floats x) {
+    return hn::Min(hn::Max(x, hn::Zero(FloatTag())), all_lanes(1.0f));
+}
+/// glm::mix.
+HWY_INLINE Floats mix(Floats a, Floats b, Floats share) {
+    return a * (all_lanes(1.0f) - share) + b * share;
+}
 /// Where `mask`, with the other sign.
 HWY_INLINE Floats negated_where(FloatMask mask, Floats x) {
     return hn::IfThenElse(mask, hn::Neg(x), x);
@@ -46,6 +42,14 @@ HWY_INLINE Vec3Lanes upper(const Vec3Lanes& w) {
 }
 HWY_INLINE Vec3Lanes reflect(const Vec3Lanes& w, const Vec3Lanes& m) {
     return m * (all_lanes(2.0f) * dot(w, m)) - w;
+}
+
+/// As dielectric.cpp has it.
+HWY_INLINE Vec3Lanes refract(const Vec3Lanes& w, const Vec3Lanes& m, Floats eta) {
+    const Floats one = all_lanes(1.0f), cos_i = dot(w, m);
+    const Floats squared = (eta - one) * (eta + one) + cos_i * cos_i;
+    const Floats cos_t = hn::Sqrt(hn::Max(squared, hn::Zero(FloatTag()))) / eta;
+    return normalize(m * (cos_i / eta - cos_t) - w / eta);
 }
 
 HWY_INLINE DoubleAxes renormalize(const DoubleAxes& w) {
@@ -93,6 +97,11 @@ HWY_INLINE Floats fresnel_dielectric(Floats cos_i, Floats eta) {
     return hn::Load(d, reflected);
 }
 
+HWY_INLINE Floats schlick_weight(Floats cos_i) {
+    const Floats m = all_lanes(1.0f) - cos_i;
+    return (m * m) * (m * m) * m;
+}
+
 /// Ggx, one a lane.
 struct GgxLanes {
     Floats alpha;
@@ -106,6 +115,10 @@ struct GgxLanes {
         return hn::Sqrt(w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y));
     }
     HWY_INLINE Floats g1(const Vec3Lanes& w) const { return all_lanes(2.0f) * w.z / (w.z + root(w)); }
+    HWY_INLINE Floats g2_over_g1(const Vec3Lanes& wo, const Vec3Lanes& wi) const {
+        const Floats root_o = root(wo);
+        return wi.z * (wo.z + root_o) / (wo.z * root(wi) + wi.z * root_o);
+    }
     HWY_INLINE Floats reflection_pdf(const Vec3Lanes& wo, const Vec3Lanes& m) const {
         return d(m) / (all_lanes(2.0f) * (wo.z + root(wo)));
     }
@@ -117,89 +130,6 @@ struct GgxLanes {
         const Vec2Lanes around = cos_sin_turns(u.x);
         const Vec3Lanes h = Vec3Lanes{sine * around.x, sine * around.y, z} + stretched;
         return normalize(Vec3Lanes{alpha * h.x, alpha * h.y, hn::Max(h.z, zero)});
-    }
-};
-
-/// DiffuseBsdf.
-struct MatteLobe {
-    Vec3Lanes albedo;
-
-    HWY_INLINE MatteLobe(const Vec3Lanes& color, Floats) : albedo(color) {}
-
-    HWY_INLINE BsdfValueLanes evaluate(const Vec3Lanes&, const Vec3Lanes& wi) const {
-        const Floats pdf = all_lanes(kInvPi) * hn::Abs(wi.z);
-        return {albedo * pdf, pdf};
-    }
-    template <typename Numbers>
-    HWY_INLINE BsdfSampleLanes sample(const Vec3Lanes& wo, const Numbers& numbers) const {
-        Vec3Lanes wi = sample_cosine_hemisphere(numbers.direction());
-        wi.z = negated_where(below_zero(wo.z), wi.z);
-        return {wi, albedo, all_lanes(kInvPi) * hn::Abs(wi.z), hn::Not(is_black(albedo))};
-    }
-};
-
-/// MetalBsdf, rough, one bounce.
-struct FacetLobe {
-    Vec3Lanes reflectance;
-    GgxLanes ggx;
-
-    HWY_INLINE FacetLobe(const Vec3Lanes& color, Floats alpha) : reflectance(color), ggx{alpha} {}
-
-    HWY_INLINE BsdfValueLanes evaluate(const Vec3Lanes& wo, const Vec3Lanes& wi) const {
-        const Vec3Lanes o = upper(wo), i = upper(wi);
-        const Floats pdf = ggx.reflection_pdf(o, half_vector(o, i));
-        return {reflectance * (ggx.g1(i) * pdf), pdf};
-    }
-    template <typename Numbers>
-    HWY_INLINE BsdfSampleLanes sample(const Vec3Lanes& wo, const Numbers& numbers) const {
-        const Vec3Lanes o = upper(wo);
-        Vec3Lanes wi = reflect(o, ggx.sample_visible(o, numbers.direction()));
-        const FloatMask finite_wi = hn::And(finite(wi.x), hn::And(finite(wi.y), finite(wi.z)));
-        const FloatMask there = hn::AndNot(is_black(reflectance), hn::And(positive(wi.z), finite_wi));
-        wi.z = negated_where(below_zero(wo.z), wi.z);
-        const BsdfValueLanes f = evaluate(wo, wi);
-        return {wi, f.value / f.pdf, f.pdf, there};
-    }
-};
-
-/// MetalBsdf, smooth.
-struct MirrorLobe {
-    Vec3Lanes reflectance;
-
-    HWY_INLINE MirrorLobe(const Vec3Lanes& color, Floats) : reflectance(color) {}
-
-    template <typename Numbers>
-    HWY_INLINE BsdfSampleLanes sample(const Vec3Lanes& wo, const Numbers&) const {
-        return {{hn::Neg(wo.x), hn::Neg(wo.y), wo.z}, reflectance, all_lanes(1.0f), hn::Not(is_black(reflectance))};
-    }
-};
-
-/// DielectricBsdf, smooth.
-struct GlassLobe {
-    Vec3Lanes tint;
-    Floats ior;
-
-    HWY_INLINE GlassLobe(const Vec3Lanes& color, Floats index) : tint(color), ior(index) {}
-
-    template <typename Numbers>
-    HWY_INLINE BsdfSampleLanes sample(const Vec3Lanes& wo, const Numbers& numbers) const {
-        const Floats zero = hn::Zero(FloatTag()), one = all_lanes(1.0f);
-        const Floats eta = hn::IfThenElse(positive(wo.z), ior, one / ior);
-        const Vec3Lanes o = upper(wo), m = all_lanes(Vec3(0, 0, 1));
-        const Floats fresnel = fresnel_dielectric(hn::Min(hn::Max(dot(o, m), zero), one), eta);
-        const FloatMask reflects = hn::Lt(numbers.lobe(), fresnel);
-        Vec3Lanes wi = select(reflects, reflect(o, m), refract(o, m, eta));
-        const FloatMask there = hn::Not(hn::Xor(reflects, positive(wi.z)));
-        wi.z = negated_where(below_zero(wo.z), wi.z);
-        return {wi, tint, hn::IfThenElse(reflects, fresnel, one - fresnel), there};
-    }
-
-private:
-    static HWY_INLINE Vec3Lanes refract(const Vec3Lanes& w, const Vec3Lanes& m, Floats eta) {
-        const Floats one = all_lanes(1.0f), cos_i = dot(w, m);
-        const Floats squared = (eta - one) * (eta + one) + cos_i * cos_i;
-        const Floats cos_t = hn::Sqrt(hn::Max(squared, hn::Zero(FloatTag()))) / eta;
-        return normalize(m * (cos_i / eta - cos_t) - w / eta);
     }
 };
 
