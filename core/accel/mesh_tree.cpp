@@ -1,5 +1,6 @@
 #include "core/accel/mesh_tree.h"
 
+#include "core/accel/kd_merge.h"
 #include "core/accel/parallel.h"
 #include "core/accel/triangle_runs.h"
 
@@ -8,15 +9,16 @@
 namespace rayuela {
 namespace {
 
-std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildControl& control) {
-    std::vector<Bounds3> bounds(mesh.triangles.size());
+UnsetVector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildControl& control) {
+    UnsetVector<Bounds3> bounds(mesh.triangles.size());
     parallel_ranges(bounds.size(), 4096, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled) return;
         for (std::size_t i = begin; i < end; ++i) {
             const glm::uvec3& t = mesh.triangles[i];
             const Vec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
             // min and max drop a NaN; the build drops what is not finite.
-            if (is_finite(a) && is_finite(b) && is_finite(c)) bounds[i] = {min(a, min(b, c)), max(a, max(b, c))};
+            const bool usable = is_finite(a) && is_finite(b) && is_finite(c);
+            bounds[i] = usable ? Bounds3{min(a, min(b, c)), max(a, max(b, c))} : Bounds3();
         }
     });
     return bounds;
@@ -29,9 +31,10 @@ void write_leaf(const TriangleMesh& mesh, std::span<const std::uint32_t> triangl
     }
 }
 
-std::vector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, const BuildControl& control) {
+UnsetVector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, const BuildControl& control) {
     const std::size_t size = kTriangleRuns * tree.references.size();
-    std::vector<float> data(size + kRunPadding);
+    UnsetVector<float> data(size + kRunPadding);
+    std::fill_n(data.end() - kRunPadding, kRunPadding, 0.0f);
     parallel_ranges(tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled) return;
         for (std::size_t i = begin; i < end; ++i) {
@@ -44,9 +47,28 @@ std::vector<float> make_leaf_data(const TriangleMesh& mesh, const KdTree& tree, 
     return data;
 }
 
+std::optional<KdTree> build_tree(const TriangleMesh& mesh, const AccelSettings& settings, const MeshTree* known,
+                                 BuildControl& control) {
+    const auto bounds = triangle_bounds(mesh, control);
+    if (control.cancelled) return {};
+    return build_kd_tree({.bounds = bounds,
+                          .mesh = &mesh,
+                          .split = settings.split,
+                          .leaf_size = settings.leaf_size,
+                          .known = known ? &known->tree : nullptr,
+                          .known_leaf_size = known ? known->leaf_size : 0},
+                         control);
+}
+
+std::optional<KdTree> merged_tree(const TriangleMesh& mesh, const MeshTree& known, int leaf_size,
+                                  BuildControl& control) {
+    control.done.fetch_add(mesh.triangles.size() - known.tree.primitives, std::memory_order_relaxed);
+    return merge_leaves(known.tree, known.split, leaf_size, control);
+}
+
 /// Null when cancelled.
 std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>& mesh, KdTree tree,
-                                       const BuildControl& control) {
+                                       const AccelSettings& settings, const BuildControl& control) {
     auto result = std::make_shared<MeshTree>();
     result->tree = std::move(tree);
     fork_join([&] { result->stats = result->tree.stats(); },
@@ -55,6 +77,8 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
     result->stats.primitives = mesh->triangles.size();
     result->stats.memory_bytes += (kTriangleRuns * result->tree.references.size() + kRunPadding) * sizeof(float);
     result->mesh = mesh;
+    result->split = settings.split;
+    result->leaf_size = settings.leaf_size;
     return result;
 }
 
@@ -62,7 +86,7 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
 
 std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const TriangleMesh>& mesh) {
     const BuildControl control;
-    const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
+    const auto bounds = triangle_bounds(*mesh, control);
     KdTree tree;
     for (std::uint32_t i = 0; i < bounds.size(); ++i) {
         if (!fits_a_tree(bounds[i])) continue;
@@ -70,18 +94,18 @@ std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const Trian
         tree.bounds.extend(bounds[i]);
     }
     tree.nodes = {KdNode::leaf(0, static_cast<std::uint32_t>(tree.references.size()))};
-    return finish(mesh, std::move(tree), control);
+    tree.primitives = tree.references.size();
+    return finish(mesh, std::move(tree), {.leaf_size = kMaxLeafSize}, control);
 }
 
 std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
-                                                const AccelSettings& settings, BuildControl& control) {
-    const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
-    if (control.cancelled) return nullptr;
-    auto tree = build_kd_tree(
-        {.bounds = bounds, .mesh = mesh.get(), .split = settings.split, .leaf_size = settings.leaf_size}, control);
-    if (!tree) return nullptr;
-
-    return finish(mesh, std::move(*tree), control);
+                                                const AccelSettings& settings, BuildControl& control,
+                                                const MeshTree* known) {
+    if (known && known->split != settings.split) known = nullptr;
+    auto tree = known && known->leaf_size <= settings.leaf_size
+                    ? merged_tree(*mesh, *known, settings.leaf_size, control)
+                    : build_tree(*mesh, settings, known, control);
+    return tree ? finish(mesh, std::move(*tree), settings, control) : nullptr;
 }
 
 }  // namespace rayuela
