@@ -17,6 +17,7 @@ struct RaysOptions {
     bool median_split = false, list = false;
     std::vector<std::string> isas;
     std::vector<int> threads;        ///< Not empty: how rays and builds scale with these.
+    std::vector<int> leaf_steps;     ///< Not empty: what changes of the leaf size take, along these and back.
     std::vector<std::string> sizes;  ///< Not empty: the cost of a ray at these counts of triangles (parse_count).
 };
 
@@ -26,6 +27,8 @@ struct RaysOptions {
 Result<nlohmann::json> bench_rays(const RaysOptions& options, const BenchMesh& mesh);
 /// What several threads do, beside Embree.
 nlohmann::json bench_scaling(const RaysOptions& options, const BenchMesh& mesh);
+/// What it takes to change the leaf size of a tree that is there, beside building it anew.
+nlohmann::json bench_leaf_steps(const RaysOptions& options, const BenchMesh& mesh);
 /// What a ray costs in open land of growing detail, beside Embree.
 nlohmann::json bench_sizes(const RaysOptions& options);
 

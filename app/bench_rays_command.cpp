@@ -18,6 +18,11 @@ Result<BenchMesh> find_mesh(const std::string& name) {
     return found != made.end() ? Result<BenchMesh>(*found) : read_bench_mesh(name);
 }
 
+Result<nlohmann::json> run_mesh(const RaysOptions& options, const BenchMesh& mesh) {
+    if (!options.leaf_steps.empty()) return bench_leaf_steps(options, mesh);
+    return options.threads.empty() ? bench_rays(options, mesh) : bench_scaling(options, mesh);
+}
+
 Result<nlohmann::json> run_meshes(const RaysOptions& options) {
     std::vector<std::string> names = options.meshes;
     if (names.empty()) {
@@ -27,7 +32,7 @@ Result<nlohmann::json> run_meshes(const RaysOptions& options) {
     for (const std::string& name : names) {
         const auto mesh = find_mesh(name);
         if (!mesh) return tl::unexpected(mesh.error());
-        auto result = options.threads.empty() ? bench_rays(options, *mesh) : bench_scaling(options, *mesh);
+        auto result = run_mesh(options, *mesh);
         if (!result) return tl::unexpected(result.error());
         all.push_back(std::move(*result));
     }
@@ -78,11 +83,16 @@ BenchKind add_bench_rays(CLI::App& bench) {
     command.add_option("--repetitions", options->repetitions, "Rounds, interleaved")->check(CLI::Range(1, 1000));
     auto* threads = command.add_option("--threads", options->threads, "Instead: rays and builds with so many threads");
     threads->delimiter(',')->check(CLI::Range(1, 1024));
-    command.add_option("--builds", options->builds, "Rounds of builds, with --threads")->check(CLI::Range(1, 1000));
+    auto* leaf_steps = command.add_option("--leaf-steps", options->leaf_steps,
+                                          "Instead: changes of the leaf size, along these and back, beside builds");
+    leaf_steps->delimiter(',')->check(CLI::Range(kMinLeafSize, kMaxLeafSize))->excludes(threads);
+    command.add_option("--builds", options->builds, "Rounds of builds, with --threads or --leaf-steps")
+        ->check(CLI::Range(1, 1000));
     command.add_option("--sizes", options->sizes, "Instead: the cost of a ray in so many triangles, like 1k,10k,1M")
         ->delimiter(',')
         ->check(check_count)
-        ->excludes(threads);
+        ->excludes(threads)
+        ->excludes(leaf_steps);
     command.add_option("--json", options->json, "Write the figures to this file");
     return {&command, [options] { return run_rays(*options); }};
 }

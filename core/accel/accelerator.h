@@ -55,8 +55,8 @@ class Accelerator {
 public:
     virtual ~Accelerator() = default;
 
-    /// Builds in parallel on the calling thread's task arena. Trees of meshes that `previous` has or
-    /// keeps with the same settings are shared. Null when cancelled.
+    /// Builds in parallel on the calling thread's task arena. Trees of meshes that `previous` has or keeps with the same
+    /// settings are shared; those for another leaf size are made from them. Null when cancelled.
     static std::shared_ptr<const Accelerator> build(std::vector<GeometryInstance> instances,
                                                     const AccelSettings& settings, const Accelerator* previous,
                                                     BuildControl& control);

@@ -10,8 +10,8 @@
 namespace rayuela {
 namespace {
 
-bool same_trees(const AccelSettings& a, const AccelSettings& b) {
-    return a.split == b.split && a.leaf_size == b.leaf_size;
+bool is_for(const MeshTree& tree, const AccelSettings& settings) {
+    return tree.split == settings.split && tree.leaf_size == settings.leaf_size;
 }
 
 }  // namespace
@@ -31,12 +31,17 @@ std::shared_ptr<const KdAccelerator> KdAccelerator::build(std::vector<GeometryIn
 }
 
 bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& control) {
-    if (previous && same_trees(previous->settings_, settings_)) mesh_trees_ = previous->mesh_trees_;
-    std::erase_if(mesh_trees_, [](const auto& entry) { return entry.second->mesh.expired(); });
+    if (previous) mesh_trees_ = previous->mesh_trees_;
+    std::erase_if(mesh_trees_, [&](const auto& entry) {
+        return entry.second->mesh.expired() || entry.second->split != settings_.split;
+    });
 
     std::vector<std::shared_ptr<const TriangleMesh>> missing;
+    std::unordered_set<const TriangleMesh*> seen;
     for (const TracedObject& object : objects_) {
-        if (object.mesh() && mesh_trees_.try_emplace(object.mesh()).second)
+        if (!object.mesh() || !seen.insert(object.mesh()).second) continue;
+        const auto tree = mesh_trees_.find(object.mesh());
+        if (tree == mesh_trees_.end() || !is_for(*tree->second, settings_))
             missing.push_back(std::get<std::shared_ptr<const TriangleMesh>>(object.shape));
     }
     for (const auto& mesh : missing) control.total += mesh->triangles.size();
@@ -44,7 +49,11 @@ bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& co
 
     std::vector<std::shared_ptr<const MeshTree>> built(missing.size());
     parallel_ranges(missing.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) built[i] = build_mesh_tree(missing[i], settings_, control);
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto known = mesh_trees_.find(missing[i].get());
+            built[i] = build_mesh_tree(missing[i], settings_, control,
+                                       known != mesh_trees_.end() ? known->second.get() : nullptr);
+        }
     });
     if (control.cancelled || std::count(built.begin(), built.end(), nullptr) > 0) return false;
     for (std::size_t i = 0; i < missing.size(); ++i) mesh_trees_[missing[i].get()] = std::move(built[i]);

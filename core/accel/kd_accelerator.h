@@ -52,7 +52,7 @@ private:
     AccelSettings settings_;
     std::vector<TracedObject> objects_;
     std::vector<std::uint32_t> planes_;
-    /// Those of meshes that are out of sight stay for as long as the mesh and the settings do.
+    /// Those of meshes that are out of sight stay for as long as the mesh and the split do, of whatever leaf size they are.
     std::unordered_map<const TriangleMesh*, std::shared_ptr<const MeshTree>> mesh_trees_;
     std::vector<const MeshTree*> mesh_of_object_;
     KdTree tree_;

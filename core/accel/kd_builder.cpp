@@ -3,6 +3,7 @@
 #include "core/accel/kd_branch.h"
 #include "core/accel/kd_partition.h"
 #include "core/accel/parallel.h"
+#include "core/accel/unset_vector.h"
 
 #include <algorithm>
 #include <memory>
@@ -19,23 +20,12 @@ constexpr std::size_t kTaskReferences = 8192;
 struct NodeTask {
     Bounds3 cell;
     int depth = 0;
+    std::uint32_t known = kNone;                       ///< The same node of the known tree; kNone below its leaves.
     std::uint64_t duplicates_left = 0;                 ///< References that cuts below may add.
     std::uint64_t nodes_left = KdNode::kMaxNodes - 1;  ///< That may stand below.
 };
 
-/// Leaves new elements as the memory was: they are written before they are read.
-struct UnsetAllocator : std::allocator<KdReference> {
-    template <typename T>
-    struct rebind {
-        using other = UnsetAllocator;
-    };
-    void construct(KdReference*) const noexcept {}
-    template <typename... Arguments>
-    void construct(KdReference* at, Arguments&&... arguments) const {
-        std::construct_at(at, std::forward<Arguments>(arguments)...);
-    }
-};
-using References = std::vector<KdReference, UnsetAllocator>;
+using References = UnsetVector<KdReference>;
 
 /// Of all primitives that fit a tree, in their order. `cell` becomes what bounds them.
 References all_references(std::span<const Bounds3> bounds, Bounds3& cell) {
@@ -149,9 +139,18 @@ private:
         return cut && cut->duplicates <= task.duplicates_left ? cut : std::nullopt;
     }
 
+    const KdNode* known_node(const NodeTask& task) const {
+        return task.known == kNone ? nullptr : &input_.known->nodes[task.known];
+    }
+
     std::optional<KdCut> sah_cut(std::span<const KdReference> references, const NodeTask& task) const {
         const auto n = references.size();
         if (n <= static_cast<std::size_t>(input_.leaf_size)) return {};
+        if (const KdNode* known = known_node(task)) {
+            if (!known->is_leaf()) return KdCut{.axis = known->axis(), .plane = known->split()};
+            const bool looked_for = known->count() > static_cast<std::size_t>(input_.known_leaf_size);
+            if (looked_for) return {};
+        }
         const auto cut = find_sah_cut(references, task.cell, input_.step_cost);
         return cut && cut->cost < static_cast<double>(n) ? cut : std::nullopt;
     }
@@ -169,9 +168,13 @@ private:
                                             : partition_median(references, input_.mesh, cut, input_.bounds, below);
     }
 
-    static std::pair<NodeTask, NodeTask> child_tasks(const NodeTask& task, const KdCut& cut, std::size_t references,
-                                                     const KdPartCounts& parts) {
+    std::pair<NodeTask, NodeTask> child_tasks(const NodeTask& task, const KdCut& cut, std::size_t references,
+                                              const KdPartCounts& parts) const {
         NodeTask task_below = task, task_above = task;
+        const KdNode* const known = known_node(task);
+        const bool cut_there = known && !known->is_leaf();
+        task_below.known = cut_there ? known->children() : kNone;
+        task_above.known = cut_there ? known->children() + 1 : kNone;
         task_below.cell.hi[cut.axis] = cut.plane;
         task_above.cell.lo[cut.axis] = cut.plane;
         task_below.depth = task_above.depth = task.depth + 1;
@@ -200,6 +203,7 @@ std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& con
     constexpr std::uint64_t kDuplicates = 8, kAlwaysAllowed = 1'000'000;
     NodeTask root;
     References references = all_references(input.bounds, root.cell);
+    if (input.known && input.split == KdSplit::sah) root.known = 0;
     root.duplicates_left = std::max(kDuplicates * references.size(), kAlwaysAllowed);
     const std::uint64_t unusable = input.bounds.size() - references.size();
     control.done.fetch_add(unusable, std::memory_order_relaxed);
@@ -211,6 +215,7 @@ std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& con
     tree.nodes = std::move(whole.nodes);
     tree.references = std::move(whole.references);
     tree.bounds = root.cell;
+    tree.primitives = input.bounds.size() - unusable;
     return tree;
 }
 

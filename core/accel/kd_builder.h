@@ -17,6 +17,10 @@ struct KdBuildInput {
     KdSplit split = KdSplit::sah;
     int leaf_size = 16;
     float step_cost = 1;  ///< Of a step of traversal, in tests of one primitive (sah).
+    /// When set, a tree over the same primitives, of the same split and step cost, for a leaf size that is not smaller: its
+    /// cuts are not looked for again (sah). The result is the same.
+    const KdTree* known = nullptr;
+    int known_leaf_size = 0;
 };
 
 /// The tree does not depend on the number of threads. References stay below 9 times the primitives (or a million), so that a

@@ -1,7 +1,6 @@
 #include "core/accel/kd_tree.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace rayuela {
 
@@ -10,17 +9,14 @@ AccelStats KdTree::stats() const {
     stats.nodes = nodes.size();
     stats.references = references.size();
     stats.memory_bytes = nodes.size() * sizeof(KdNode) + references.size() * sizeof(std::uint32_t);
-    stats.leaves = apart != 0 ? 1 : 0;
-    std::vector<std::pair<std::uint32_t, int>> open{{0u, 0}};
-    while (!open.empty()) {
-        const auto [index, depth] = open.back();
-        open.pop_back();
-        if (nodes[index].is_leaf()) {
+    std::vector<std::uint8_t> depth(nodes.size(), 0);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].is_leaf()) {
             ++stats.leaves;
-            stats.depth = std::max(stats.depth, depth);
+            stats.depth = std::max<int>(stats.depth, depth[i]);
         } else {
-            open.emplace_back(nodes[index].children(), depth + 1);
-            open.emplace_back(nodes[index].children() + 1, depth + 1);
+            const std::uint32_t children = nodes[i].children();
+            depth[children] = depth[children + 1] = static_cast<std::uint8_t>(depth[i] + 1);
         }
     }
     return stats;

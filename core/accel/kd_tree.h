@@ -46,13 +46,14 @@ private:
 
 inline constexpr int kKdMaxDepth = 60;
 
-/// The root is nodes[0]; it always exists. A primitive is referenced by every leaf whose cell its surface meets.
+/// The root is nodes[0]; it always exists. Children stand behind their parents. A primitive is referenced by every leaf whose cell its surface meets.
 struct KdTree {
     std::vector<KdNode> nodes{KdNode()};
     std::vector<std::uint32_t> references;  ///< Primitives, leaf by leaf.
     Bounds3 bounds;                         ///< The root's cell.
     /// A leaf of primitives that stand apart, for rays to test before they go to the root; 0 where there are none.
     std::uint32_t apart = 0;
+    std::uint64_t primitives = 0;  ///< That fit a tree.
 
     /// Counts of nodes, leaves, references and their memory, and the depth.
     AccelStats stats() const;

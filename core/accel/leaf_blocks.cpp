@@ -28,7 +28,7 @@ public:
     }
     std::uint32_t triangles() const { return triangles_; }
 
-    void append(std::uint32_t first_name, std::vector<float>& data) const {
+    void append(std::uint32_t first_name, UnsetVector<float>& data) const {
         const std::size_t at = data.size(), n = vertices_;
         data.resize(at + LeafBlock::kHeader + 3 * n + triangles_);
         float* const out = data.data() + at;
@@ -66,7 +66,7 @@ private:
 };
 
 void append_runs(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
-                 std::vector<float>& data) {
+                 UnsetVector<float>& data) {
     const std::size_t n = triangles.size(), at = data.size() + LeafBlock::kHeader;
     data.resize(at + kTriangleRuns * n);
     data[at - 2] = std::bit_cast<float>(static_cast<std::uint32_t>(n));
@@ -80,7 +80,7 @@ void append_runs(const TriangleMesh& mesh, std::span<const std::uint32_t> triang
 }  // namespace
 
 void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
-                        std::vector<float>& data) {
+                        UnsetVector<float>& data) {
     // A block that is less full than this costs more tests than it saves memory.
     constexpr std::size_t kFull = 12;
     while (!triangles.empty()) {

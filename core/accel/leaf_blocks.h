@@ -1,12 +1,12 @@
 #pragma once
 
 #include "core/accel/triangle_runs.h"
+#include "core/accel/unset_vector.h"
 #include "core/shapes/mesh.h"
 
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace rayuela {
 
@@ -74,6 +74,6 @@ struct CornerView {
 
 /// Appends the blocks of a leaf with these triangles, whose names begin at `first_name`.
 void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
-                        std::vector<float>& data);
+                        UnsetVector<float>& data);
 
 }  // namespace rayuela

@@ -1,5 +1,6 @@
 #include "core/accel/mesh_tree.h"
 
+#include "core/accel/kd_merge.h"
 #include "core/accel/large_objects.h"
 #include "core/accel/parallel.h"
 #include "core/accel/triangle_runs.h"
@@ -9,25 +10,26 @@
 namespace rayuela {
 namespace {
 
-std::vector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildControl& control) {
-    std::vector<Bounds3> bounds(mesh.triangles.size());
+UnsetVector<Bounds3> triangle_bounds(const TriangleMesh& mesh, const BuildControl& control) {
+    UnsetVector<Bounds3> bounds(mesh.triangles.size());
     parallel_ranges(bounds.size(), 4096, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled) return;
         for (std::size_t i = begin; i < end; ++i) {
             const glm::uvec3& t = mesh.triangles[i];
             const Vec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
             // min and max drop a NaN; the build drops what is not finite.
-            if (is_finite(a) && is_finite(b) && is_finite(c)) bounds[i] = {min(a, min(b, c)), max(a, max(b, c))};
+            const bool usable = is_finite(a) && is_finite(b) && is_finite(c);
+            bounds[i] = usable ? Bounds3{min(a, min(b, c)), max(a, max(b, c))} : Bounds3();
         }
     });
     return bounds;
 }
 
 /// Writes the blocks of all leaves, which from then on begin where KdNode::first says.
-std::vector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const BuildControl& control) {
+UnsetVector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const BuildControl& control) {
     constexpr std::size_t kPart = 4096;
     struct Part {
-        std::vector<float> data;
+        UnsetVector<float> data;
         std::size_t begin = 0;
     };
     std::vector<Part> parts((tree.nodes.size() + kPart - 1) / kPart);
@@ -53,7 +55,8 @@ std::vector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
         part.begin = size;
         size += part.data.size();
     }
-    std::vector<float> data(size + kRunPadding);
+    UnsetVector<float> data(size + kRunPadding);
+    std::fill_n(data.end() - kRunPadding, kRunPadding, 0.0f);
     parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             std::ranges::copy(parts[i].data, data.begin() + static_cast<std::ptrdiff_t>(parts[i].begin));
@@ -66,16 +69,49 @@ std::vector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
 }
 
 /// The triangles that are better tested with every ray than in the leaves of a tree over all. They no longer have bounds.
-std::vector<std::uint32_t> take_apart(std::span<Bounds3> bounds, const AccelSettings& settings) {
-    if (settings.split != KdSplit::sah || bounds.size() <= static_cast<std::size_t>(settings.leaf_size)) return {};
+std::vector<std::uint32_t> take_apart(std::span<Bounds3> bounds, KdSplit split) {
+    if (split != KdSplit::sah || bounds.size() <= kLargePrimitives) return {};
     std::vector<std::uint32_t> apart = find_large(bounds, {});
     for (const std::uint32_t i : apart) bounds[i] = {};
     return apart;
 }
 
+void add_apart(KdTree& tree, std::span<const std::uint32_t> apart) {
+    if (apart.empty()) return;
+    tree.apart = static_cast<std::uint32_t>(tree.nodes.size());
+    tree.nodes.push_back(
+        KdNode::leaf(static_cast<std::uint32_t>(tree.references.size()), static_cast<std::uint32_t>(apart.size())));
+    tree.references.insert(tree.references.end(), apart.begin(), apart.end());
+}
+
+std::optional<KdTree> build_tree(const TriangleMesh& mesh, const AccelSettings& settings, const MeshTree* known,
+                                 BuildControl& control) {
+    auto bounds = triangle_bounds(mesh, control);
+    if (control.cancelled) return {};
+    const std::vector<std::uint32_t> apart = take_apart(bounds, settings.split);
+    auto tree = build_kd_tree({.bounds = bounds,
+                               .mesh = &mesh,
+                               .split = settings.split,
+                               .leaf_size = settings.leaf_size,
+                               .known = known ? &known->tree : nullptr,
+                               .known_leaf_size = known ? known->leaf_size : 0},
+                              control);
+    if (tree) add_apart(*tree, apart);
+    return tree;
+}
+
+std::optional<KdTree> merged_tree(const TriangleMesh& mesh, const MeshTree& known, int leaf_size,
+                                  BuildControl& control) {
+    control.done.fetch_add(mesh.triangles.size() - known.tree.primitives, std::memory_order_relaxed);
+    auto tree = merge_leaves(
+        known.tree, [&](const KdNode& leaf) { return known.references(leaf); }, known.split, leaf_size, control);
+    if (tree && known.tree.apart != 0) add_apart(*tree, known.references(known.tree.nodes[known.tree.apart]));
+    return tree;
+}
+
 /// Null when cancelled.
 std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>& mesh, KdTree tree,
-                                       const BuildControl& control) {
+                                       const AccelSettings& settings, const BuildControl& control) {
     auto result = std::make_shared<MeshTree>();
     result->tree = std::move(tree);
     result->bounds = result->tree.bounds;
@@ -92,6 +128,8 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
     result->stats.primitives = mesh->triangles.size();
     result->stats.memory_bytes += result->leaf_data.size() * sizeof(float);
     result->mesh = mesh;
+    result->split = settings.split;
+    result->leaf_size = settings.leaf_size;
     return result;
 }
 
@@ -99,7 +137,7 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
 
 std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const TriangleMesh>& mesh) {
     const BuildControl control;
-    const std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
+    const auto bounds = triangle_bounds(*mesh, control);
     KdTree tree;
     for (std::uint32_t i = 0; i < bounds.size(); ++i) {
         if (!fits_a_tree(bounds[i])) continue;
@@ -107,24 +145,18 @@ std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const Trian
         tree.bounds.extend(bounds[i]);
     }
     tree.nodes = {KdNode::leaf(0, static_cast<std::uint32_t>(tree.references.size()))};
-    return finish(mesh, std::move(tree), control);
+    tree.primitives = tree.references.size();
+    return finish(mesh, std::move(tree), {.leaf_size = kMaxLeafSize}, control);
 }
 
 std::shared_ptr<const MeshTree> build_mesh_tree(const std::shared_ptr<const TriangleMesh>& mesh,
-                                                const AccelSettings& settings, BuildControl& control) {
-    std::vector<Bounds3> bounds = triangle_bounds(*mesh, control);
-    if (control.cancelled) return nullptr;
-    const std::vector<std::uint32_t> apart = take_apart(bounds, settings);
-    auto tree = build_kd_tree(
-        {.bounds = bounds, .mesh = mesh.get(), .split = settings.split, .leaf_size = settings.leaf_size}, control);
-    if (!tree) return nullptr;
-    if (!apart.empty()) {
-        tree->apart = static_cast<std::uint32_t>(tree->nodes.size());
-        tree->nodes.push_back(KdNode::leaf(static_cast<std::uint32_t>(tree->references.size()),
-                                           static_cast<std::uint32_t>(apart.size())));
-        tree->references.insert(tree->references.end(), apart.begin(), apart.end());
-    }
-    return finish(mesh, std::move(*tree), control);
+                                                const AccelSettings& settings, BuildControl& control,
+                                                const MeshTree* known) {
+    if (known && known->split != settings.split) known = nullptr;
+    auto tree = known && known->leaf_size <= settings.leaf_size
+                    ? merged_tree(*mesh, *known, settings.leaf_size, control)
+                    : build_tree(*mesh, settings, known, control);
+    return tree ? finish(mesh, std::move(*tree), settings, control) : nullptr;
 }
 
 }  // namespace rayuela

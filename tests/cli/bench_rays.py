@@ -67,6 +67,17 @@ def test_sizes_cost():
     assert all(figure["nanoseconds"]["kd"] > 0 for figure in figures), figures
 
 
+def test_leaf_sizes_step():
+    run("bench", "rays", "box70k", "--median", "--builds", 2, "--leaf-steps", "8,16,64", "--json", "steps.json")
+    (mesh,) = json.loads(pathlib.Path("steps.json").read_text())
+    steps = [(figure["from"], figure["to"]) for figure in mesh["leaf_steps"]]
+    assert steps == [(8, 16), (16, 64), (64, 16), (16, 8)] * 2, steps
+    for figure in mesh["leaf_steps"]:
+        low, high = figure["share_interval"]
+        assert 0 < low <= figure["cpu_share"] <= high, figure
+        assert figure["from"] > figure["to"] or figure["cpu_share"] < 1, figure
+
+
 def test_wrong_use_is_named():
     assert "2000M" in run("bench", "rays", "--sizes", "1k,2000M", status=2).stderr
     assert "--threads" in run("bench", "rays", "--threads", "0", status=2).stderr
@@ -80,4 +91,5 @@ test_all_contestants_agree_and_are_reported()
 test_a_file_is_a_mesh()
 test_threads_scale()
 test_sizes_cost()
+test_leaf_sizes_step()
 test_wrong_use_is_named()

@@ -76,6 +76,25 @@ TEST(KdVersusList, EachLeafSizeAndSplitGivesIdenticalHits) {
     }
 }
 
+/// Each tree made from the one before it.
+TEST(KdVersusList, ChangesOfTheLeafSize) {
+    Random random(5);
+    for (std::uint64_t seed = 200; seed < 206; ++seed) {
+        const auto instances = make_scene(seed, 24, 150);
+        const auto rays = make_rays(instances, 1500, seed);
+        const Answers expected = trace(*scalar_list(instances), rays);
+        for (const KdSplit split : {KdSplit::median, KdSplit::sah}) {
+            std::shared_ptr<const Accelerator> kd;
+            for (int step = 0; step < 12; ++step) {
+                const int leaf_size = step % 6 == 5 ? kMaxLeafSize : random.integer(1, step % 3 == 0 ? 64 : 8);
+                BuildControl control;
+                kd = Accelerator::build(instances, {.leaf_size = leaf_size, .split = split}, kd.get(), control);
+                EXPECT_TRUE(same_answers(expected, trace(*kd, rays), rays)) << "leaf size " << leaf_size;
+            }
+        }
+    }
+}
+
 TEST(KdVersusList, ManyScenes) {
     for (std::uint64_t seed = 100; seed < 140; ++seed) {
         const auto instances = make_scene(seed, static_cast<int>(1 + seed % 40), 60);

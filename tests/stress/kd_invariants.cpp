@@ -1,4 +1,5 @@
 #include "core/accel/kd_builder.h"
+#include "core/accel/kd_merge.h"
 #include "core/accel/traced_object.h"
 #include "tests/stress/stress.h"
 #include "tests/support/oracle.h"
@@ -385,11 +386,15 @@ Outcome invariants(double scale) {
             const Scene scene = random_scene(number, random);
             outcome.cases -= 1;
             for (const KdSplit split : {KdSplit::median, KdSplit::sah}) {
+                KdTree finest;
                 for (const int leaf_size : {1, 2, 3, 4, 8, 16, 64, static_cast<int>(scene.bounds.size())}) {
                     const KdBuildInput input{
                         .bounds = scene.bounds, .mesh = scene.mesh.get(), .split = split, .leaf_size = leaf_size};
                     BuildControl control;
-                    TreeCheck(scene, input, *build_kd_tree(input, control), outcome).run();
+                    const KdTree built = *build_kd_tree(input, control);
+                    TreeCheck(scene, input, built, outcome).run();
+                    if (leaf_size == 1) finest = built;
+                    TreeCheck(scene, input, *merge_leaves(finest, split, leaf_size, control), outcome).run();
                 }
             }
         });
@@ -398,7 +403,7 @@ Outcome invariants(double scale) {
 }  // namespace
 
 std::vector<StressTest> kd_invariant_tests() {
-    return {{14, "invariants of the tree, 8 leaf sizes and both splits", "cost over best cut", 1.001, invariants}};
+    return {{14, "invariants of the tree, 8 leaf sizes, built and raised", "cost over best cut", 1.001, invariants}};
 }
 
 }  // namespace rayuela::stress

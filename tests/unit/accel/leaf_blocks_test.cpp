@@ -51,7 +51,7 @@ struct Read {
     std::size_t shared = 0, runs = 0;
 
     Read(const TriangleMesh& mesh, std::span<const std::uint32_t> names, std::uint32_t first_name) {
-        std::vector<float> data;
+        UnsetVector<float> data;
         append_leaf_blocks(mesh, names, first_name, data);
         std::size_t at = 0, done = 0;
         while (at < data.size() && done < names.size()) {

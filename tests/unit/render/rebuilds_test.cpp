@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <thread>
 
 /// What an edit rebuilds: counted in primitives that a build has taken in, and seen by what two versions share.
@@ -191,15 +192,29 @@ TEST_F(Rebuilds, AnEvenSkyRebuildsNothing) {
     EXPECT_EQ(next(panorama, scene).scene->lights().size(), after.scene->lights().size());
 }
 
-TEST_F(Rebuilds, TheLeafSizeRebuildsTrees) {
-    scene.render.accel.leaf_size = 3;
-    const Version after = next(before, scene);
-    EXPECT_EQ(after.built, kObjects + kTriangles);
-    EXPECT_NE(torus_tree(after), torus_tree(before));
-    EXPECT_EQ(&after.scene->surfaces(), &before.scene->surfaces());
-    EXPECT_TRUE(same_lights(before, after) && same_emission(before, after));
-    scene.render.max_samples = 7;
-    EXPECT_EQ(next(after, scene).built, 0u);
+/// Moves a cut, as no build would have it.
+float mark(const MeshTree& tree) {
+    KdNode& root = const_cast<KdNode&>(tree.tree.nodes[0]);
+    root = KdNode::inner(root.axis(), std::nextafter(root.split(), kInfinity), root.children());
+    return root.split();
+}
+
+TEST_F(Rebuilds, TheLeafSizeMakesTreesFromThoseThatAreThere) {
+    const float marked = mark(*torus_tree(before));
+    for (const int leaf_size : {3, 4, 100}) {
+        scene.render.accel.leaf_size = leaf_size;
+        const Version after = next(before, scene);
+        EXPECT_EQ(after.built, kObjects + kTriangles);
+        EXPECT_NE(torus_tree(after), torus_tree(before));
+        EXPECT_EQ(torus_tree(after)->leaf_size, leaf_size);
+        EXPECT_EQ(torus_tree(after)->tree.nodes[0].split(), marked);
+        EXPECT_EQ(&after.scene->surfaces(), &before.scene->surfaces());
+        EXPECT_TRUE(same_lights(before, after) && same_emission(before, after));
+        scene.render.max_samples += 7;
+        EXPECT_EQ(next(after, scene).built, 0u);
+    }
+    scene.render.accel.split = KdSplit::median;
+    EXPECT_NE(torus_tree(next(before, scene))->tree.nodes[0].split(), marked) << "built anew";
 }
 
 TEST_F(Rebuilds, HiddenObjectsAreNotBuiltAndComeBackAsTheyWere) {
