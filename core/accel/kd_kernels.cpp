@@ -94,13 +94,14 @@ void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit>
             if (can_hit(rays[i])) intersect_object(scene.objects, index, rays[i], hits[i]);
         }
     }
+    // Without planes none has an answer.
+    const auto open = scene.planes.empty() ? open_rays<Query::closest>(hits, work) : open_rays<kQuery>(hits, work);
     if (const auto mesh = only_mesh(scene)) {
-        trace_mesh<kQuery>(scene, *mesh, open_rays<kQuery>(hits, work), rays, hits, work.block);
+        trace_mesh<kQuery>(scene, *mesh, open, rays, hits, work.block);
         return;
     }
     work.candidates.clear();
-    if (!scene.leaves->apart.empty())
-        FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open_rays<kQuery>(hits, work));
+    if (!scene.leaves->apart.empty()) FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open);
     if (scene.tree) {
         RayBlockWriter(rays, hits, nullptr, scene.tree->bounds).write(open_rays<kQuery>(hits, work), work.block);
         ObjectClient<kQuery> client(scene, work.block, rays, hits, work.candidates);
