@@ -291,7 +291,7 @@ Skip normals_of_vertices(const RenderScene& scene) {
     for (const TriangleMesh* mesh : meshes) bytes += mesh->normals.empty() ? mesh->positions.size() * sizeof(Vec3) : 0;
     return {.name = "Normals of vertices",
             .state = meshes.empty() ? SkipState::absent : skipped_if(bytes > 0),
-            .why = bytes > 0        ? "Meshes without them store none and are flat."
+            .why = bytes > 0 ? "Meshes without them, or with none but those of their faces, store none and are flat."
                    : meshes.empty() ? "There is no mesh."
                                     : "All meshes bring them.",
             .saved = bytes,
