@@ -58,7 +58,8 @@ LAMP_PATHS = [
     (LOBES, "if (light_tracer_) {", "if (false) {"),
 ]
 LAMPS_AND_EMISSION = LAMP_PATHS + [
-    (TRACER, "        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);\n", ""),
+    (TRACER, "        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);\n",
+     "        static_cast<void>(at);\n"),
     (TRACER, "      light_sampling_(options.light_sampling && scene.features().light_sampling()),\n", ""),
     (TRACER_H, "    bool light_sampling_;\n", "    static constexpr bool light_sampling_ = false;\n"),
 ]
