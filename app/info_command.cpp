@@ -124,7 +124,11 @@ nlohmann::ordered_json describe(const RenderScene& built) {
           {"leaves", accel.leaves},
           {"depth", accel.depth},
           {"memory_bytes", accel.memory_bytes},
-          {"bytes_a_primitive", std::round(10 * static_cast<double>(accel.memory_bytes) / primitives) / 10}}}};
+          {"bytes_a_primitive", std::round(10 * static_cast<double>(accel.memory_bytes) / primitives) / 10}}},
+        {"memory_bytes",
+         {{"surfaces", built.surfaces().memory_bytes()},
+          {"lights", built.lights().memory_bytes()},
+          {"all", built.memory_bytes()}}}};
     if (!bounds.empty()) {
         info["bounds"] = {{"min", {bounds.lo.x, bounds.lo.y, bounds.lo.z}},
                           {"max", {bounds.hi.x, bounds.hi.y, bounds.hi.z}}};

@@ -24,6 +24,7 @@ struct Workspace {
     std::vector<MeshCandidate> candidates;
     std::vector<std::uint32_t> first;  ///< One an object: where its candidates begin, sorted by object.
     std::vector<std::uint32_t> sorted;
+    std::vector<Hit> hits;  ///< Of rays that only ask whether there is one.
 };
 
 template <Query kQuery>
@@ -85,21 +86,22 @@ std::span<const std::uint32_t> open_rays(std::span<const Hit> hits, Workspace& w
     return {work.ids, count};
 }
 
+/// `hits` are without a hit before.
 template <Query kQuery>
 void trace_block(const KdScene& scene, std::span<const Ray> rays, std::span<Hit> hits, Workspace& work) {
-    std::fill(hits.begin(), hits.end(), Hit());
     for (const std::uint32_t index : scene.planes) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (can_hit(rays[i])) intersect_object(scene.objects, index, rays[i], hits[i]);
         }
     }
+    // Without planes none has an answer.
+    const auto open = scene.planes.empty() ? open_rays<Query::closest>(hits, work) : open_rays<kQuery>(hits, work);
     if (const auto mesh = only_mesh(scene)) {
-        trace_mesh<kQuery>(scene, *mesh, open_rays<kQuery>(hits, work), rays, hits, work.block);
+        trace_mesh<kQuery>(scene, *mesh, open, rays, hits, work.block);
         return;
     }
     work.candidates.clear();
-    if (!scene.leaves->apart.empty())
-        FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open_rays<kQuery>(hits, work));
+    if (!scene.leaves->apart.empty()) FewObjects<kQuery>(scene, rays, hits, work.candidates).trace(open);
     if (scene.tree) {
         const Bounds3& bounds = scene.tree->bounds;
         RayBlockWriter(rays, hits, nullptr, bounds, bounds).write(open_rays<kQuery>(hits, work), work.block);
@@ -114,17 +116,18 @@ void intersect_batch(const KdScene& scene, std::span<const Ray> rays, std::span<
     Workspace work;
     for (std::size_t i = 0; i < rays.size(); i += kBlockRays) {
         const std::size_t n = std::min(kBlockRays, rays.size() - i);
+        std::ranges::fill(hits.subspan(i, n), Hit());
         trace_block<Query::closest>(scene, rays.subspan(i, n), hits.subspan(i, n), work);
     }
 }
 
 void occluded_batch(const KdScene& scene, std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
     Workspace work;
-    Hit hits[kBlockRays];
     for (std::size_t i = 0; i < rays.size(); i += kBlockRays) {
         const std::size_t n = std::min(kBlockRays, rays.size() - i);
-        trace_block<Query::any>(scene, rays.subspan(i, n), std::span(hits, n), work);
-        for (std::size_t k = 0; k < n; ++k) blocked[i + k] = hits[k].valid() ? 1 : 0;
+        work.hits.assign(n, Hit());
+        trace_block<Query::any>(scene, rays.subspan(i, n), work.hits, work);
+        for (std::size_t k = 0; k < n; ++k) blocked[i + k] = work.hits[k].valid() ? 1 : 0;
     }
 }
 

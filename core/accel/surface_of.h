@@ -31,14 +31,18 @@ inline double margin_at(const Vec3d& p) {
     return kEdgeMargin * max_abs(p);
 }
 
-/// The way from a shape's own space to the world and back. Points and normals of a shape that has been taken to the world
-/// once and for all need no way, and what it is made of is read for texture coordinates alone.
+/// The way from a shape's own space to the world and back. A shape that has been taken to the world once and for all needs
+/// none, unless texture coordinates follow from what it was before.
 class Placement {
 public:
-    Placement(const Affine& to_world, bool shape_in_world)
-        : in_world_(shape_in_world), way_(std::make_unique<const Way>(AffineD(to_world))) {}
+    Placement(const Affine& to_world, bool shape_in_world, bool keeps_way = false)
+        : in_world_(shape_in_world),
+          way_(!shape_in_world || keeps_way ? std::make_unique<const Way>(AffineD(to_world)) : nullptr) {}
 
     bool in_world() const { return in_world_; }
+    /// The rest, but for what a shape in the world does without.
+    bool has_way() const { return way_ != nullptr; }
+    static constexpr std::size_t way_bytes() { return sizeof(Way); }
     const AffineD& to_world() const { return way_->to_world; }
     const AffineD& to_local() const { return way_->to_local; }
     RayD ray(const Ray& world) const { return in_world_ ? RayD(world) : to_local().ray(RayD(world)); }
@@ -70,8 +74,8 @@ struct SurfaceOf<Sphere> {
     Placement placement;
     SphereD sphere;
 
-    SurfaceOf(const Sphere& own, const Affine& to_world)
-        : placement(to_world, world_sphere(own, to_world).has_value()),
+    SurfaceOf(const Sphere& own, const Affine& to_world, bool with_uv)
+        : placement(to_world, world_sphere(own, to_world).has_value(), with_uv),
           sphere(world_sphere(own, to_world).value_or(SphereD{Vec3d(own.center), own.radius})) {}
 
     Surface at(const Ray& ray, const Hit& hit, bool with_uv) const {
@@ -88,7 +92,7 @@ struct SurfaceOf<Sphere> {
         surface.size = max_abs(surface.p);
         if (!placement.in_world())
             surface.size += max_abs(placement.to_world().translation) + max_abs(placement.to_world().vector(p));
-        if (with_uv) surface.uv = uv(n);
+        if (with_uv && placement.has_way()) surface.uv = uv(n);
         return surface;
     }
 
@@ -132,8 +136,10 @@ struct SurfaceOf<Box> {
     Placement placement;
     Vec3d lo, hi;
     Vec3d scale{1};  ///< A step along an axis of the box is so long in the world.
+    double offset;   ///< Largest of the numbers by which the box has been moved.
 
-    SurfaceOf(const Box& own, const Affine& to_world) : placement(to_world, world_box(own, to_world).has_value()) {
+    SurfaceOf(const Box& own, const Affine& to_world)
+        : placement(to_world, world_box(own, to_world).has_value()), offset(max_abs(Vec3d(to_world.translation))) {
         const Box box = world_box(own, to_world).value_or(own);
         lo = Vec3d(box.min);
         hi = Vec3d(box.max);
@@ -157,8 +163,7 @@ struct SurfaceOf<Box> {
         Surface surface;
         surface.p = placement.point(p);
         surface.ng = unit(placement.normal(n));
-        surface.size = max_abs(surface.p) + max_abs(placement.to_world().translation) +
-                       max_abs(placement.in_world() ? p : placement.to_world().vector(p));
+        surface.size = max_abs(surface.p) + offset + max_abs(placement.in_world() ? p : placement.to_world().vector(p));
         const auto across = [&](int k) { return hi[k] > lo[k] ? (p[k] - lo[k]) / (hi[k] - lo[k]) : 0.0; };
         surface.uv = Vec2(across((axis + 1) % 3), across((axis + 2) % 3));
         return surface;

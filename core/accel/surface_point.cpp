@@ -69,12 +69,14 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances, std::span<const 
                 auto& table = std::get<std::vector<SurfaceOf<Shape>>>(tables_->kinds);
                 entries_.push_back({.kind = static_cast<std::uint32_t>(instance.shape.index()),
                                     .index = static_cast<std::uint32_t>(table.size())});
-                if constexpr (std::is_same_v<Shape, std::shared_ptr<const TriangleMesh>>) {
-                    table.emplace_back(shape, instance.to_world, with_uv.empty() || with_uv[entries_.size() - 1] != 0);
-                    entries_.back().interpolates = !shape->normals.empty();
+                const bool uv = with_uv.empty() || with_uv[entries_.size() - 1] != 0;
+                if constexpr (std::is_constructible_v<SurfaceOf<Shape>, const Shape&, const Affine&, bool>) {
+                    table.emplace_back(shape, instance.to_world, uv);
                 } else {
                     table.emplace_back(shape, instance.to_world);
                 }
+                if constexpr (std::is_same_v<Shape, std::shared_ptr<const TriangleMesh>>)
+                    entries_.back().interpolates = !shape->normals.empty();
                 entries_.back().flat = kFlat<SurfaceOf<Shape>>;
                 has_meshes_ |= instance.shape.index() == kMeshKind;
                 if constexpr (std::is_same_v<Shape, Sphere>) {
@@ -165,11 +167,33 @@ void Surfaces::points(std::span<const Ray> rays, std::span<const Hit> hits, std:
     finish_spheres();
 }
 
+namespace {
+
+/// Of the surfaces, those that have a way between spaces, and those that do without.
+template <typename Of>
+std::array<std::uint64_t, 2> ways(const std::vector<Of>& surfaces) {
+    std::array<std::uint64_t, 2> count{};
+    if constexpr (requires(const Of& surface) { surface.placement; }) {
+        for (const Of& surface : surfaces) ++count[surface.placement.has_way() ? 0 : 1];
+    }
+    return count;
+}
+
+}  // namespace
+
 std::uint64_t Surfaces::memory_bytes() const {
     const auto bytes = [](const auto&... table) {
-        return (std::uint64_t{0} + ... + (table.capacity() * sizeof(table[0])));
+        return (std::uint64_t{0} + ... +
+                (table.capacity() * sizeof(table[0]) + ways(table)[0] * Placement::way_bytes()));
     };
     return entries_.capacity() * sizeof(Entry) + bytes(tables_->spheres) + std::apply(bytes, tables_->kinds);
+}
+
+std::uint64_t Surfaces::bytes_left_out() const {
+    const auto bytes = [](const auto&... table) {
+        return (std::uint64_t{0} + ... + (ways(table)[1] * Placement::way_bytes()));
+    };
+    return std::apply(bytes, tables_->kinds);
 }
 
 SurfacePoint surface_point(std::span<const GeometryInstance> instances, const Ray& ray, const Hit& hit) {

@@ -1,10 +1,13 @@
 #include "core/io/mesh_builder.h"
 
 #include "core/io/put_aside.h"
+#include "core/math/float_error.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace rayuela {
 
@@ -105,19 +108,37 @@ std::vector<std::uint32_t> normalize_normals(std::vector<Vec3>& normals) {
     return bad;
 }
 
+/// Unit; none where the triangle has no area.
+std::optional<Vec3> face_normal(const TriangleMesh& mesh, const glm::uvec3& t) {
+    const Vec3d a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    const Vec3d normal = glm::cross(b - a, c - a);
+    const double length = glm::length(normal);
+    if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+    return Vec3(normal / length);
+}
+
 void use_face_normals(TriangleMesh& mesh) {
     for (const glm::uvec3& t : mesh.triangles) {
-        const Vec3d a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-        const Vec3d normal = glm::cross(b - a, c - a);
-        const double length = glm::length(normal);
-        if (!(length > 0) || !std::isfinite(length)) continue;
-        for (int corner = 0; corner < 3; ++corner) {
-            if (mesh.normals[t[corner]] == Vec3(0)) mesh.normals[t[corner]] = Vec3(normal / length);
+        const std::optional<Vec3> normal = face_normal(mesh, t);
+        for (int corner = 0; normal && corner < 3; ++corner) {
+            if (mesh.normals[t[corner]] == Vec3(0)) mesh.normals[t[corner]] = *normal;
         }
     }
     for (Vec3& normal : mesh.normals) {
         if (normal == Vec3(0)) normal = Vec3(0, 1, 0);  // Of no triangle with an area: never seen.
     }
+}
+
+/// Whether all normals are those of the faces, but for what a program loses that works them out in float: they say nothing.
+bool are_of_faces(const TriangleMesh& mesh) {
+    return std::ranges::all_of(mesh.triangles, [&](const glm::uvec3& t) {
+        const std::optional<Vec3> face = face_normal(mesh, t);
+        if (!face) return true;
+        const auto is_same = [&](std::uint32_t i) {
+            return max_component(glm::abs(mesh.normals[i] - *face)) <= gamma(8);
+        };
+        return is_same(t.x) && is_same(t.y) && is_same(t.z);
+    });
 }
 
 }  // namespace
@@ -150,6 +171,7 @@ MeshResult finish_mesh(TriangleMesh mesh, const std::string& name, Problems* war
                  fmt::format("{} normals are missing or no directions: normals of faces are used", bad.size())});
         }
     }
+    if (!mesh.normals.empty() && are_of_faces(mesh)) mesh.normals.clear();
     for (Vec2& uv : mesh.uvs) {
         if (!is_finite(Vec3(uv, 0))) uv = Vec2(0);
     }

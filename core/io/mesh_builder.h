@@ -14,8 +14,8 @@ void triangulate(std::span<const std::uint32_t> corners, std::span<const Vec3> p
                  std::vector<glm::uvec3>& triangles);
 
 /// The last step of every mesh reader: refuses meshes without triangles and positions that are not finite, makes normals
-/// unit (one that is zero or not finite becomes the normal of a face there), fills the bounds and puts many texture
-/// coordinates aside.
+/// unit (one that is zero or not finite becomes the normal of a face there) and drops them where all are those of the faces,
+/// fills the bounds and puts many texture coordinates aside.
 MeshResult finish_mesh(TriangleMesh mesh, const std::string& name, Problems* warnings);
 
 }  // namespace rayuela

@@ -251,10 +251,16 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
 }
 
 void Accumulation::add_to_film(Tile& tile, const PathBatch& batch, const PathTracer& tracer) {
+    const bool plain =
+        !adapts() && options_.clamp == 0 && tile.adaptive.shows_all_from(static_cast<std::uint32_t>(tile.samples));
     for (std::size_t i = 0; i < batch.ids.size(); ++i) {
         const auto [pixel, sample] = batch.ids[i];
         if (sample == 0) object_ids_[pixel] = tracer.object_id(batch.first_object[i]);
         const Color& traced = batch.radiance[i];
+        if (plain) {
+            film_.add(pixel, sample, traced);
+            continue;
+        }
         const Color radiance = options_.clamp > 0 ? clamped(traced, options_.clamp) : traced;
         if (adapts()) tile.adaptive.measure(i % tile.pixels(), sample, luminance(radiance));
         if (!tile.adaptive.shows(sample)) continue;

@@ -2,6 +2,7 @@
 
 #include "core/render/film.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -51,6 +52,10 @@ public:
     bool shows(std::uint32_t sample) const {
         const Half& half = halves_[sample_half(sample)];
         return !half.stopped && sample >= half.shown;
+    }
+    /// Whether it does, from this sample on.
+    bool shows_all_from(std::uint32_t sample) const {
+        return !stopped(0) && !stopped(1) && sample >= std::max(halves_[0].shown, halves_[1].shown);
     }
     /// All samples below `samples` that `shows` wanted are in the film.
     void set_shown(int samples);

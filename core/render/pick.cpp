@@ -11,7 +11,7 @@ std::optional<Pick> pick(const RenderScene& scene, const Vec2& position) {
     Hit hit;
     scene.accelerator().intersect({&ray, 1}, {&hit, 1});
     if (!hit.valid()) return std::nullopt;
-    const SurfacePoint surface = scene.surfaces().point(ray, hit);
+    const SurfacePoint surface = scene.surfaces().point(ray, hit, false);
     return Pick{.object = scene.object_id(hit.object),
                 .point = surface.p + scene.origin(),
                 .normal = surface.ns,

@@ -266,6 +266,16 @@ std::vector<Skip> copies_of_meshes(const RenderScene& scene) {
              .unit = "bytes"}};
 }
 
+Skip transforms(const RenderScene& scene) {
+    const std::uint64_t bytes = scene.surfaces().bytes_left_out();
+    return {.name = "Transforms of surfaces",
+            .state = skipped_where(bytes > 0),
+            .why = bytes > 0 ? "Shapes that have been taken to the world once and for all keep none."
+                             : "No shape could do without.",
+            .saved = bytes,
+            .unit = "bytes"};
+}
+
 /// Distinct meshes of visible objects.
 std::unordered_set<const TriangleMesh*> meshes_of(const RenderScene& scene) {
     std::unordered_set<const TriangleMesh*> meshes;
@@ -281,7 +291,7 @@ Skip normals_of_vertices(const RenderScene& scene) {
     for (const TriangleMesh* mesh : meshes) bytes += mesh->normals.empty() ? mesh->positions.size() * sizeof(Vec3) : 0;
     return {.name = "Normals of vertices",
             .state = meshes.empty() ? SkipState::absent : skipped_if(bytes > 0),
-            .why = bytes > 0        ? "Meshes without them store none and are flat."
+            .why = bytes > 0 ? "Meshes without them, or with none but those of their faces, store none and are flat."
                    : meshes.empty() ? "There is no mesh."
                                     : "All meshes bring them.",
             .saved = bytes,
@@ -368,6 +378,7 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
                             cells_of_trees(scene),
                             hidden_objects(scene)};
     std::ranges::move(copies_of_meshes(scene), std::back_inserter(skips));
+    skips.push_back(transforms(scene));
     skips.push_back(normals_of_vertices(scene));
     skips.push_back(uvs_of_vertices(scene));
     skips.push_back(pixels_of_textures(scene));

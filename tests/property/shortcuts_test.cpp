@@ -1,4 +1,5 @@
 #include "core/io/scene_reader.h"
+#include "core/math/isa.h"
 #include "core/render/progressive_renderer.h"
 #include "core/render/skips.h"
 #include "tests/render_testing.h"
@@ -26,26 +27,46 @@ std::shared_ptr<const Frame> render_with(const Scene& scene, const Shortcuts& sh
     return renderer.publish(SessionPhase::rendering);
 }
 
+/// Each shortcut alone put back, all of them, and on each set of instructions none and all.
 void expect_the_same_image(Scene scene, const std::string& name) {
     scene.film.height = std::max(1, 40 * scene.film.height / scene.film.width);
     scene.film.width = 40;
     const auto expected = render_with(scene, {});
+    const auto expect_same = [&](const Shortcuts& shortcuts, std::string_view what) {
+        EXPECT_EQ(render_with(scene, shortcuts)->image.pixels, expected->image.pixels) << name << " " << what;
+    };
     Shortcuts none;
     for (const ShortcutField& field : kShortcuts) {
         Shortcuts others;
         others.*field.member = none.*field.member = false;
-        EXPECT_EQ(render_with(scene, others)->image.pixels, expected->image.pixels) << name << " " << field.key;
+        expect_same(others, field.key);
     }
-    EXPECT_EQ(render_with(scene, none)->image.pixels, expected->image.pixels) << name;
+    for (const std::string_view set : instruction_sets()) {
+        use_instruction_set(set);
+        expect_same({}, set);
+        expect_same(none, set);
+    }
+    use_instruction_set(instruction_sets().front());
 }
 
-TEST(Shortcuts, ChangeNoImageOfAnExample) {
-    for (const auto& entry : fs::directory_iterator(fs::path(RAYUELA_ASSETS_DIR) / "scenes")) {
-        const auto loaded = read_scene(entry.path());
-        ASSERT_TRUE(loaded) << entry.path();
-        expect_the_same_image(loaded->scene, entry.path().filename().string());
-    }
+std::vector<std::string> examples() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(fs::path(RAYUELA_ASSETS_DIR) / "scenes"))
+        names.push_back(entry.path().stem().stem().string());
+    std::ranges::sort(names);
+    return names;
 }
+
+class EachExample : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EachExample, IsTheSameWithEveryFormOfItsStages) {
+    const auto loaded = read_scene(fs::path(RAYUELA_ASSETS_DIR) / "scenes" / (GetParam() + ".scene.json"));
+    ASSERT_TRUE(loaded);
+    expect_the_same_image(loaded->scene, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Shortcuts, EachExample, ::testing::ValuesIn(examples()),
+                         [](const auto& name) { return name.param; });
 
 TEST(Shortcuts, ChangeNoImageOfASceneWithoutLight) {
     Scene scene = mixed_scene(40, 30);

@@ -106,13 +106,13 @@ TEST(Obj, PolygonsNegativeIndicesGroupsAndComments) {
 
 TEST(Obj, TuplesBecomeVertices) {
     const auto mesh = parse_obj(
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 2\n"
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 -2\n"
         "f 1/1/1 2/2/1 3/3/1\nf 2/2/1 4/1/1 3/3/1\nf 2//1 4//1 3//1\n",
         "a.obj");
     ASSERT_TRUE(mesh) << error_of(mesh);
     // (1,1) (2,2) (3,3) (4,1) and the three of the last face, which have no uv.
     EXPECT_EQ((*mesh)->positions.size(), 7u);
-    EXPECT_EQ((*mesh)->normals, std::vector<Vec3>(7, Vec3(0, 0, 1)));
+    EXPECT_EQ((*mesh)->normals, std::vector<Vec3>(7, Vec3(0, 0, -1)));
     EXPECT_EQ((*mesh)->uvs[1], Vec2(1, 0));
 }
 
@@ -125,6 +125,25 @@ TEST(Obj, MissingNormalsBecomeThoseOfAFaceWithAWarning) {
     EXPECT_EQ((*mesh)->normals[2], Vec3(0, 0, 1));
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_THAT(warnings[0].message(), HasSubstr("a.obj: vertex 1: 2 normals"));
+}
+
+/// Two triangles in different planes, with normals of their own at the three corners of each.
+std::string bent_obj(const std::string& second_normal) {
+    return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvn " + second_normal +
+           "\nf 1//1 2//1 3//1\nf 2//2 3//2 4//2\n";
+}
+
+TEST(Obj, NormalsOfFacesAreNotKept) {
+    // As far as six digits say it: not as far as a float.
+    for (const auto& [normal, kept] :
+         {std::pair("-1 -1 -1", std::size_t{6}), std::pair("0 0 1", std::size_t{6}),
+          std::pair("0.577350 0.577350 0.577351", std::size_t{6}),
+          std::pair("0.57735027 0.57735027 0.57735027", std::size_t{0}), std::pair("1 1 1", std::size_t{0})}) {
+        const auto mesh = parse_obj(bent_obj(normal), "a.obj");
+        ASSERT_TRUE(mesh) << error_of(mesh);
+        EXPECT_EQ((*mesh)->normals.size(), kept) << normal;
+        EXPECT_EQ((*mesh)->positions.size(), 6u);
+    }
 }
 
 TEST(Obj, ErrorsNameTheLine) {

@@ -1,0 +1,180 @@
+"""What a scene may hold, feature by feature: how stripped.py takes the code for it out of the program, and examples that have
+none of it. A replacement is (file, old, new); each old stands once in its file."""
+
+TRACER, LOBES, TRACER_H = "core/render/path_tracer.cpp", "core/render/path_tracer_lobes.cpp", "core/render/path_tracer.h"
+INTERACTION, AIMED, BLOCK = "core/render/interaction.h", "core/render/aimed_bsdf.h", "core/render/lobe_block.cpp"
+CAMERA, FILM = "core/render/camera_rays.cpp", "core/render/accumulation.cpp"
+KERNELS, FEW, CLIENT = "core/accel/kd_kernels.cpp", "core/accel/few_objects-inl.h", "core/accel/object_lanes-inl.h"
+RAY_BLOCK, TRACED = "core/accel/ray_block-inl.h", "core/accel/traced_object.cpp"
+SURFACES, SURFACE_OF = "core/accel/surface_point.cpp", "core/accel/surface_of.h"
+SKY, LIGHTS, LAMPS = "core/lights/environment_light.cpp", "core/lights/light_table.cpp", "core/lights/few_lamps.cpp"
+PRINCIPLED = "core/materials/principled.cpp"
+
+TEXTURES = [
+    (TRACER, "    const bool materials_vary = scene_.features().textures || !options_.shortcuts.ready_materials;\n", ""),
+    (TRACER, "return materials_vary ? trace_as<true>(batch, cancelled, record) : trace_as<false>(batch, cancelled, record);",
+     "return trace_as<false>(batch, cancelled, record);"),
+    (INTERACTION, ",\n          varying_(varies ? std::optional(make_bsdf(packed.material, surface.uv)) : std::nullopt) {}",
+     " {\n        static_cast<void>(varies);\n    }"),
+    (INTERACTION, "return varying_ ? *varying_ : material.bsdf;", "return material.bsdf;"),
+    (INTERACTION, "    std::optional<Bsdf> varying_;  ///< Where the material is textured.\n", ""),
+    (SURFACES, "[&](std::size_t i) { return !with_uv.empty() && with_uv[i] != 0; };",
+     "[&](std::size_t) { return static_cast<void>(with_uv), false; };"),
+]
+SHADING_NORMALS = [
+    (INTERACTION, "return (glm::dot(w, point.ng) > 0) == (glm::dot(w, point.ns) > 0) ? point.ns : point.ng;",
+     "return static_cast<void>(w), point.ng;"),
+    (BLOCK, "return select(hn::Xor(positive(dot(w, ng)), positive(dot(w, ns))), ng, ns);",
+     "return static_cast<void>(w), static_cast<void>(ns), ng;"),
+    (LOBES, "    put(point.ns, block.ns, to);\n", ""),
+    (SURFACES, "if (wants_uv(i) || entries_[hits[i].object].interpolates)", "if (wants_uv(i))"),
+]
+LENSES = [
+    (TRACER, "    const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;\n", ""),
+    (TRACER, "    if (lens_extends) draw_2d(batch.samplers, kLens, batch.lens_numbers);\n", ""),
+    (TRACER, "lens_extends ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);", "Vec2(0);"),
+    (CAMERA, "    if (lens_radius_ == 0) {\n        ray.origin = origin_;", "    if (true) {\n        ray.origin = origin_;"),
+]
+SKIES = [
+    (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) continue;", "if (true) continue;"),
+]
+PANORAMAS = [
+    (SKY, "    if (image_) return scale_ * look_up(*image_, image_position(w));\n", ""),
+    (SKY, "Color look_up(const", "[[maybe_unused]] Color look_up(const"),
+    (LIGHTS, "    if (u.x < environment_probability_) return sample_environment({u.x / environment_probability_, u.y});\n"
+             "    const float rest = (u.x - environment_probability_) / (1 - environment_probability_);\n"
+             "    return sample_area_light(receiver, {std::min(rest, 1 - kUnitRoundoff), u.y});",
+     "    return sample_area_light(receiver, {std::min(u.x, 1 - kUnitRoundoff), u.y});"),
+    (LIGHTS, "if (s) s->pdf *= (1 - environment_probability_) * draw->probability;", "if (s) s->pdf *= draw->probability;"),
+    (LIGHTS, "return (1 - environment_probability_) * selection *", "return selection *"),
+    (LIGHTS, "return environment_ ? environment_probability_ * environment_->pdf(wi) : 0.0f;",
+     "return static_cast<void>(wi), 0.0f;"),
+]
+LAMP_PATHS = [
+    (TRACER, "return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;",
+     "return static_cast<void>(state), static_cast<void>(bounce), false;"),
+    (TRACER, "light_tracer_ ? light_tracer_->camera_weight(state.light_ratio, hit, at) : 1;", "1;"),
+    (TRACER, "if (light_tracer_) next.light_ratio", "if (false) next.light_ratio"),
+    (LOBES, "if (light_tracer_) {", "if (false) {"),
+]
+LAMPS_AND_EMISSION = LAMP_PATHS + [
+    (TRACER, "        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);\n",
+     "        static_cast<void>(at);\n"),
+    (TRACER, "      light_sampling_(options.light_sampling && scene.features().light_sampling()),\n", ""),
+    (TRACER_H, "    bool light_sampling_;\n", "    static constexpr bool light_sampling_ = false;\n"),
+]
+MANY_LAMPS = [
+    (LIGHTS, "if (few_ && together) {", "static_cast<void>(together);\n    if (true) {"),
+    (LIGHTS, "const float selection = tree_.probability(receiver, light);",
+     "const float selection = tree_.only_light() == light ? 1.0f : 0.0f;"),
+    (LAMPS, "if (lamps.count == 1) return {", "if (true) return {"),
+    (LAMPS, "return lamps_.count == 1 ? all_lanes(row[0]) : hn::GatherIndex(FloatTag(), row.data(), lamp_);",
+     "return all_lanes(row[0]);"),
+]
+SPHERES = [
+    (FEW, "                if (leaf_.spheres > 0) add_spheres(rays);\n", ""),
+    (FEW, "            decide_triangles(axis);\n            decide_spheres();\n", "            decide_triangles(axis);\n"),
+    (LAMPS, "        if (!lamps_.any_flat) return sphere_points(of(lamps_.origin), of(lamps_.size), p, u);\n", ""),
+    (LAMPS, "        if (!lamps_.any_sphere) return flat;\n", "        if (true) return flat;\n"),
+    (SURFACES, "} else if (entry.sphere && !wants_uv(i)) {", "} else if (false) {"),
+    (SURFACES, "    finish_flats();\n    finish_spheres();\n", "    finish_flats();\n"),
+]
+PLANES = [
+    (KERNELS, "for (const std::uint32_t index : scene.planes) {", "for (const std::uint32_t index : {0u}) {\n        break;"),
+]
+MESHES = [
+    (KERNELS, "    if (const auto mesh = only_mesh(scene)) {", "    if (std::optional<std::uint32_t> mesh; false) {"),
+    (KERNELS, "    trace_candidates<kQuery>(scene, rays, hits, work);\n}", "}"),
+    (FEW, "                if (scene_.mesh_trees[object]) {", "                if (false) {"),
+    (CLIENT, "                if (scene_.mesh_trees[object]) {", "                if (false) {"),
+    (SURFACES, "        if (has_meshes_) {", "        if (false) {"),
+]
+BOXES_AND_MESHES = [change for change in MESHES if change[0] in (KERNELS, SURFACES)] + [
+    (FEW, "            if (leaf_.others > 0) each_group(axis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });\n", ""),
+    (CLIENT, "            test_others(triangles_.ray(visit.slot), leaf);\n", ""),
+    (CLIENT, "        for (LaneBits rest = leaf.others > 0 ? lanes : 0; rest != 0; rest &= rest - 1)\n"
+             "            test_others(first_ + first_lane(rest), leaf);\n", ""),
+]
+FLAT_SHAPES = [
+    (FEW, "                if (leaf_.triangles > 0) add_triangles(rays, axis);\n", ""),
+    (FEW, "            decide_triangles(axis);\n            decide_spheres();\n", "            decide_spheres();\n"),
+    (CLIENT, "            add_triangles(visit.slot, leaf);\n", ""),
+    (CLIENT, "        decide_triangles();\n        decide_spheres();\n", "        decide_spheres();\n"),
+    (CLIENT, "        packet_.test(\n            runs, leaf.triangles, mask_of(lanes),", "        packet_.test(\n            runs, 0, mask_of(lanes),"),
+    (SURFACES, "        if (entry.flat) {", "        if (false) {"),
+    (SURFACES, "    finish_flats();\n    finish_spheres();\n", "    finish_spheres();\n"),
+]
+TRANSFORMS = [
+    (RAY_BLOCK, "        if (to_local_) {", "        if (false) {"),
+    (RAY_BLOCK, "to_local_ ? hn::LoadU(df, block.pad + i) : least", "least"),
+    (SURFACE_OF, "bool in_world() const { return in_world_; }", "bool in_world() const { return true; }"),
+    (SURFACE_OF, "RayD ray(const Ray& world) const { return in_world_ ? RayD(world) : to_local().ray(RayD(world)); }",
+     "RayD ray(const Ray& world) const { return RayD(world); }"),
+    (SURFACE_OF, "Vec3d point(const Vec3d& p) const { return in_world_ ? p : to_world().point(p); }",
+     "Vec3d point(const Vec3d& p) const { return p; }"),
+    (SURFACE_OF, "Vec3d normal(const Vec3d& n) const { return in_world_ ? n : way_->normals * n; }",
+     "Vec3d normal(const Vec3d& n) const { return n; }"),
+]
+TRANSMISSION = [
+    (INTERACTION, "        if (material.transmits) return Vec3(0);\n", ""),
+    (AIMED, "if (!targets || at.material.transmits || !at.material.smooth) return;", "if (!targets || !at.material.smooth) return;"),
+    (BLOCK, "return scatter_as<GlassLobe, is_delta(Kind::glass)>(task, block);", "return;"),
+    (PRINCIPLED, "enum Lobe { kCoat, kFacets, kBody, kThroughFacets, kThroughBody, kLobeCount };",
+     "enum Lobe { kCoat, kFacets, kBody, kLobeCount };"),
+    (PRINCIPLED, "        albedo[kThroughFacets] = below_coat * (1 - b.dielectric_f0) * (facets.total - facets.grazing) * b.transmission;\n"
+                 "        albedo[kThroughBody] = below_coat * lost * b.transmission;\n", ""),
+    (PRINCIPLED, "        return {\n"
+                 "            split.below_coat * transmission * ((1 - schlick(dielectric_f0, o_m)) * facet_weight + lost * cosine_pdf),\n"
+                 "            split.probability[kThroughFacets] * facet_pdf + split.probability[kThroughBody] * cosine_pdf};\n",
+     "        return {};\n"),
+    (PRINCIPLED, "    const bool passes = lobe == kThroughFacets || lobe == kThroughBody;\n"
+                 "    const bool from_body = lobe == kBody || lobe == kThroughBody;\n", "    const bool from_body = lobe == kBody;\n"),
+    (PRINCIPLED, "if (passes != (wo.z < 0)) wi.z = -wi.z;", "if (wo.z < 0) wi.z = -wi.z;"),
+]
+DELTA_LOBES = [
+    (BLOCK, "return scatter_as<MirrorLobe, is_delta(Kind::mirror)>(task, block);", "return;"),
+    (BLOCK, "return scatter_as<GlassLobe, is_delta(Kind::glass)>(task, block);", "return;"),
+    (TRACER, "rr_start_ + (specular ? kSparedSpecularBounces : 0);", "static_cast<void>(specular), rr_start_;"),
+    (TRACER, "next.bsdf_pdf = sample->specular ? 0 : sample->pdf;", "next.bsdf_pdf = sample->pdf;"),
+    (LOBES, "state.bsdf_pdf = is_delta(kind) ? 0 : block.next_pdf[i];", "state.bsdf_pdf = block.next_pdf[i];"),
+    (LOBES, ".samples_lights = light_sampling_ && !is_delta(kind),", ".samples_lights = light_sampling_,"),
+]
+ALL_LOBES_BUT_MATTE = DELTA_LOBES + [
+    (BLOCK, "return scatter_as<FacetLobe, is_delta(Kind::facets)>(task, block);", "return;"),
+    (TRACER, "for (const SingleLobe::Kind kind : SingleLobe::kKinds) shade_block(batch, kind, bounce);",
+     "shade_block(batch, SingleLobe::Kind::matte, bounce);"),
+]
+ADAPTIVE = [
+    (FILM, "        !adapts() && options_.clamp == 0 && tile.adaptive.shows_all_from(static_cast<std::uint32_t>(tile.samples));",
+     "        (static_cast<void>(tile), true);"),
+]
+
+
+def together(*features):
+    """All of these out, each replacement once."""
+    return list({(file, old): (file, old, new) for feature in features for file, old, new in feature}.values())
+
+
+FEATURES = {
+    "textures": (TEXTURES, ["cornell", "materials", "veach", "weekend"]),
+    "interpolated normals": (SHADING_NORMALS, ["cornell", "materials", "veach", "weekend"]),
+    "transmission": (TRANSMISSION, ["cornell", "dragon", "many_lights", "veach"]),
+    "mirrors and clear glass": (DELTA_LOBES, ["cornell", "many_lights", "veach"]),
+    "all lobes but matte": (ALL_LOBES_BUT_MATTE, ["cornell", "fig1a", "fig2"]),
+    "lamps": (LAMPS_AND_EMISSION, ["weekend"]),
+    "more than one lamp": (MANY_LAMPS, ["cornell", "fig1a", "fig2"]),
+    "paths from lamps": (LAMP_PATHS, ["cornell", "dragon", "veach", "weekend"]),
+    "skies": (SKIES, ["cornell", "many_lights", "veach"]),
+    "panoramas": (PANORAMAS, ["fig1a", "final", "many_lights", "weekend"]),
+    "lenses": (LENSES, ["cornell", "materials", "veach"]),
+    "spheres": (SPHERES, ["cornell"]),
+    "triangles and quads": (FLAT_SHAPES, ["weekend"]),
+    "planes": (PLANES, ["cornell", "many_lights", "weekend"]),
+    "meshes": (MESHES, ["cornell", "materials", "veach", "weekend"]),
+    "boxes and meshes": (BOXES_AND_MESHES, ["fig1a", "fig3", "weekend"]),
+    "transformed meshes": (TRANSFORMS, ["dragon"]),
+    "adaptive sampling and clamping": (ADAPTIVE, ["cornell", "weekend"]),
+    "all of these that cornell lacks": (
+        together(TEXTURES, SHADING_NORMALS, TRANSMISSION, ALL_LOBES_BUT_MATTE, MANY_LAMPS, LAMP_PATHS, SKIES, PANORAMAS, LENSES,
+                 SPHERES, PLANES, MESHES), ["cornell"]),
+}
