@@ -33,7 +33,7 @@ PADS = [
     (LANES, "const Floats pad = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(pad_);", ""),
     (LANES, "hn::NegMulAdd(pad, hn::Set(d, 2.25f), end)", "end"),
     (PACKETS, "enter = middle - overlap, leave = middle + overlap;", "enter = middle, leave = middle;\n(void)overlap;"),
-    (TRIANGLES, "const Floats slack = hn::MulAdd(ray.slack.slope, triangle.extent, ray.slack.offset);",
+    (TRIANGLES, "const Floats slack = hn::MulAdd(ray.slack.slope, extent, ray.slack.offset);",
      "const Floats slack = hn::Zero(FloatTag());"),
     (TRIANGLES, "z_begin -= depth_pad + kRounding * std::fabs(z_begin);", "(void)depth_pad, (void)kRounding;"),
     (TRIANGLES, "z_end += depth_pad + kRounding * std::fabs(z_end);", ""),
