@@ -64,7 +64,7 @@ HWY_INLINE WordPairs gather_pairs(const std::uint64_t* base, const std::uint32_t
 
 /// Lanes of blocks of two, the next block four lanes on.
 template <typename Tag>
-HWY_INLINE void store_each(Tag d, hn::Vec<Tag> pairs, std::uint64_t* base, const std::uint32_t* index) {
+HWY_INLINE void store_each(Tag, hn::Vec<Tag> pairs, std::uint64_t* base, const std::uint32_t* index) {
     const hn::Half<Tag> half;
     if constexpr (hn::MaxLanes(Tag()) == 2) {
         hn::Store(hn::LowerHalf(half, pairs), half, base + index[0]);

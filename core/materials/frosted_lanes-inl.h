@@ -72,9 +72,9 @@ private:
             for (std::size_t k = 0; k < std::size(given); ++k) hn::Store(given[k], d, rows[k]);
             for (std::size_t lane = 0; lane < kLanes; lane += kDoubles) {
                 const auto load = [&](int row) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, rows[row] + lane)); };
-                const Doubles ior = load(6), zero = hn::Zero(dd), unit = all_doubles(1);
+                const Doubles relative_ior = load(6), zero = hn::Zero(dd), unit = all_doubles(1);
                 const auto outside = hn::Gt(load(7), zero), mirrored = hn::Gt(load(8), zero);
-                const Doubles eta = hn::IfThenElse(outside, ior, hn::Div(unit, ior));
+                const Doubles eta = hn::IfThenElse(outside, relative_ior, hn::Div(unit, relative_ior));
                 const DoubleAxes od = normalize({load(0), load(1), load(2)});
                 const DoubleAxes id = normalize({load(3), load(4), load(5)});
                 const DoubleAxes half = od + hn::IfThenElse(mirrored, unit, eta) * id;
