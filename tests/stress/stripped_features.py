@@ -5,10 +5,28 @@ TRACER, LOBES, TRACER_H = "core/render/path_tracer.cpp", "core/render/path_trace
 INTERACTION, AIMED, BLOCK = "core/render/interaction.h", "core/render/aimed_bsdf.h", "core/render/lobe_block.cpp"
 CAMERA, FILM = "core/render/camera_rays.cpp", "core/render/accumulation.cpp"
 KERNELS, FEW, CLIENT = "core/accel/kd_kernels.cpp", "core/accel/few_objects-inl.h", "core/accel/object_lanes-inl.h"
-RAY_BLOCK, TRACED = "core/accel/ray_block-inl.h", "core/accel/traced_object.cpp"
+RAY_BLOCK = "core/accel/ray_block-inl.h"
 SURFACES, SURFACE_OF = "core/accel/surface_point.cpp", "core/accel/surface_of.h"
+SURFACE_LANES = "core/accel/surface_lanes-inl.h"
 SKY, LIGHTS, LAMPS = "core/lights/environment_light.cpp", "core/lights/light_table.cpp", "core/lights/few_lamps.cpp"
 PRINCIPLED = "core/materials/principled.cpp"
+
+
+def together(*features):
+    """All of these out, each replacement once; where two replace the same, as the last has it."""
+    return list({(file, old): (file, old, new) for feature in features for file, old, new in feature}.values())
+
+
+def without_lobe(kind, lobe):
+    """Surfaces of this PackedBsdf::Kind are not shaded."""
+    return BLOCK, f"return scatter_as<Kind::{kind}, {lobe}>(task, paths, block);", "return;"
+
+
+def with_kinds(kinds):
+    """Only blocks of these kinds are looked at."""
+    names = ", ".join(f"PackedBsdf::Kind::{kind}" for kind in kinds)
+    return TRACER, "for (const PackedBsdf::Kind kind : PackedBsdf::kKinds)", f"for (const PackedBsdf::Kind kind : {{{names}}})"
+
 
 TEXTURES = [
     (TRACER, "    const bool materials_vary = scene_.features().textures || !options_.shortcuts.ready_materials;\n", ""),
@@ -24,10 +42,12 @@ TEXTURES = [
 SHADING_NORMALS = [
     (INTERACTION, "return (glm::dot(w, point.ng) > 0) == (glm::dot(w, point.ns) > 0) ? point.ns : point.ng;",
      "return static_cast<void>(w), point.ng;"),
-    (BLOCK, "return select(hn::Xor(positive(dot(w, ng)), positive(dot(w, ns))), ng, ns);",
-     "return static_cast<void>(w), static_cast<void>(ns), ng;"),
-    (LOBES, "    put(point.ns, block.ns, to);\n", ""),
+    (BLOCK, "frame(shading_normal(load(block.wo, i), ng, load(block.ns, i))),", "frame(ng),"),
+    (BLOCK, "    store(Vec3Lanes{c.y, c.z, c.w}, block.ns, i);\n", ""),
     (SURFACES, "if (wants_uv(i) || entries_[hits[i].object].interpolates)", "if (wants_uv(i))"),
+    (SURFACES, "    point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;\n", ""),
+    (SURFACES, "                    if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);\n", ""),
+    (SURFACE_LANES, "        point.ns = vec(6);\n", ""),
 ]
 LENSES = [
     (TRACER, "    const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;\n", ""),
@@ -62,14 +82,18 @@ LAMPS_AND_EMISSION = LAMP_PATHS + [
      "        static_cast<void>(at);\n"),
     (TRACER, "      light_sampling_(options.light_sampling && scene.features().light_sampling()),\n", ""),
     (TRACER_H, "    bool light_sampling_;\n", "    static constexpr bool light_sampling_ = false;\n"),
+    (LOBES, "    if (task.samples_lights) scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);\n", ""),
+    (LOBES, "for (std::uint64_t rest = block.casts_shadow_ray; rest != 0; rest &= rest - 1) {",
+     "for (std::uint64_t rest = 0; false;) {"),
+    (BLOCK, "        if (!task.samples_lights) continue;\n", "        continue;\n"),
+    (BLOCK, "            if (task.samples_lights) {\n", "            if (false) {\n"),
 ]
 MANY_LAMPS = [
     (LIGHTS, "if (few_ && together) {", "static_cast<void>(together);\n    if (true) {"),
     (LIGHTS, "const float selection = tree_.probability(receiver, light);",
      "const float selection = tree_.only_light() == light ? 1.0f : 0.0f;"),
     (LAMPS, "if (lamps.count == 1) return {", "if (true) return {"),
-    (LAMPS, "return lamps_.count == 1 ? all_lanes(row[0]) : hn::GatherIndex(FloatTag(), row.data(), lamp_);",
-     "return all_lanes(row[0]);"),
+    (LAMPS, "return lamps_.count == 1 ? all_lanes(row[0]) : looked_up(FloatTag(), row, lamp_);", "return all_lanes(row[0]);"),
 ]
 SPHERES = [
     (FEW, "                if (leaf_.spheres > 0) add_spheres(rays);\n", ""),
@@ -81,6 +105,8 @@ SPHERES = [
 ]
 PLANES = [
     (KERNELS, "for (const std::uint32_t index : scene.planes) {", "for (const std::uint32_t index : {0u}) {\n        break;"),
+    (KERNELS, "scene.planes.empty() ? open_rays<Query::closest>(hits, work) : open_rays<kQuery>(hits, work);",
+     "open_rays<Query::closest>(hits, work);"),
 ]
 MESHES = [
     (KERNELS, "    if (const auto mesh = only_mesh(scene)) {", "    if (std::optional<std::uint32_t> mesh; false) {"),
@@ -118,7 +144,11 @@ TRANSFORMS = [
 TRANSMISSION = [
     (INTERACTION, "        if (material.transmits) return Vec3(0);\n", ""),
     (AIMED, "if (!targets || at.material.transmits || !at.material.smooth) return;", "if (!targets || !at.material.smooth) return;"),
-    (BLOCK, "return scatter_as<GlassLobe, is_delta(Kind::glass)>(task, block);", "return;"),
+    without_lobe("glass", "GlassLobe"),
+    without_lobe("frosted", "FrostedLobe"),
+    without_lobe("see_through", "PrincipledLobe<true>"),
+    with_kinds(["matte", "facets", "dull", "mirror", "layered"]),
+    (BLOCK, "transmits(task.kind) ? all_lanes(Vec3(0)) : n", "n"),
     (PRINCIPLED, "enum Lobe { kCoat, kFacets, kBody, kThroughFacets, kThroughBody, kLobeCount };",
      "enum Lobe { kCoat, kFacets, kBody, kLobeCount };"),
     (PRINCIPLED, "        albedo[kThroughFacets] = below_coat * (1 - b.dielectric_f0) * (facets.total - facets.grazing) * b.transmission;\n"
@@ -132,28 +162,28 @@ TRANSMISSION = [
     (PRINCIPLED, "if (passes != (wo.z < 0)) wi.z = -wi.z;", "if (wo.z < 0) wi.z = -wi.z;"),
 ]
 DELTA_LOBES = [
-    (BLOCK, "return scatter_as<MirrorLobe, is_delta(Kind::mirror)>(task, block);", "return;"),
-    (BLOCK, "return scatter_as<GlassLobe, is_delta(Kind::glass)>(task, block);", "return;"),
+    without_lobe("mirror", "MirrorLobe"),
+    without_lobe("glass", "GlassLobe"),
+    with_kinds(["matte", "facets", "dull", "frosted", "layered", "see_through"]),
     (TRACER, "rr_start_ + (specular ? kSparedSpecularBounces : 0);", "static_cast<void>(specular), rr_start_;"),
     (TRACER, "next.bsdf_pdf = sample->specular ? 0 : sample->pdf;", "next.bsdf_pdf = sample->pdf;"),
-    (LOBES, "state.bsdf_pdf = is_delta(kind) ? 0 : block.next_pdf[i];", "state.bsdf_pdf = block.next_pdf[i];"),
+    (LOBES, ".specular = is_delta(kind)}", ".specular = false}"),
+    (LOBES, "state.bsdf_pdf = is_delta(kind) ? 0 : pdf;", "state.bsdf_pdf = pdf;"),
     (LOBES, ".samples_lights = light_sampling_ && !is_delta(kind),", ".samples_lights = light_sampling_,"),
 ]
-ALL_LOBES_BUT_MATTE = DELTA_LOBES + [
-    (BLOCK, "return scatter_as<FacetLobe, is_delta(Kind::facets)>(task, block);", "return;"),
-    (TRACER, "for (const SingleLobe::Kind kind : SingleLobe::kKinds) shade_block(batch, kind, bounce);",
-     "shade_block(batch, SingleLobe::Kind::matte, bounce);"),
-]
+ALL_LOBES_BUT_MATTE = together(TRANSMISSION, DELTA_LOBES, [
+    without_lobe("facets", "FacetLobe"),
+    without_lobe("dull", "DullLobe"),
+    without_lobe("layered", "PrincipledLobe<false>"),
+    with_kinds(["matte"]),
+    (LOBES, "batch.lobes[static_cast<std::size_t>(lobe.kind)];\n    const", "batch.lobes[0];\n    const"),
+    (LOBES, "if (block.size == LobeBlock::kSize) shade_block(batch, lobe.kind, bounce);",
+     "if (block.size == LobeBlock::kSize) shade_block(batch, PackedBsdf::Kind::matte, bounce);"),
+])
 ADAPTIVE = [
     (FILM, "        !adapts() && options_.clamp == 0 && tile.adaptive.shows_all_from(static_cast<std::uint32_t>(tile.samples));",
      "        (static_cast<void>(tile), true);"),
 ]
-
-
-def together(*features):
-    """All of these out, each replacement once."""
-    return list({(file, old): (file, old, new) for feature in features for file, old, new in feature}.values())
-
 
 FEATURES = {
     "textures": (TEXTURES, ["cornell", "materials", "veach", "weekend"]),
