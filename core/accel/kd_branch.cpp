@@ -12,7 +12,7 @@ struct Piece {
     const KdSubtree* tree;
     std::uint32_t root_slot, first_node, first_reference;
 
-    void copy_to(KdSubtree& whole) const {
+    void copy_to(KdTree& whole) const {
         const std::vector<KdNode>& nodes = tree->nodes;
         const auto moved = [&](const KdNode& node) {
             if (node.is_leaf()) return KdNode::leaf(node.first() + first_reference, node.count());
@@ -49,10 +49,12 @@ struct Layout {
 
 }  // namespace
 
-KdSubtree assemble(const KdBranch& root) {
+KdTree assemble(const KdBranch& root, const Bounds3& bounds, std::uint64_t primitives) {
     Layout layout;
     layout.place(root, 0);
-    KdSubtree whole;
+    KdTree whole;
+    whole.bounds = bounds;
+    whole.primitives = primitives;
     fork_join([&] { whole.nodes.resize(layout.nodes); }, [&] { whole.references.resize(layout.references); });
     parallel_ranges(layout.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) layout.pieces[i].copy_to(whole);

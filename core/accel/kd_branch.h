@@ -20,8 +20,8 @@ struct KdBranch {
     std::unique_ptr<const KdBranch> below, above;  ///< Both or none.
 };
 
-/// The nodes and references of all that hangs on a branch, copied once and in parallel, and the empty leaves made known to
-/// the nodes above them. Children stand behind their parents.
-KdSubtree assemble(const KdBranch& root);
+/// The tree of all that hangs on a branch: nodes and references copied once and in parallel, and the empty leaves made known
+/// to the nodes above them. Children stand behind their parents.
+KdTree assemble(const KdBranch& root, const Bounds3& bounds, std::uint64_t primitives);
 
 }  // namespace rayuela

@@ -210,13 +210,7 @@ std::optional<KdTree> build_kd_tree(const KdBuildInput& input, BuildControl& con
 
     const KdBranch built = Builder(input, control).build_task(std::move(references), root);
     if (control.cancelled) return {};
-    KdSubtree whole = assemble(built);
-    KdTree tree;
-    tree.nodes = std::move(whole.nodes);
-    tree.references = std::move(whole.references);
-    tree.bounds = root.cell;
-    tree.primitives = input.bounds.size() - unusable;
-    return tree;
+    return assemble(built, root.cell, input.bounds.size() - unusable);
 }
 
 }  // namespace rayuela

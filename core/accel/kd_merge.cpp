@@ -125,13 +125,7 @@ std::optional<KdTree> merge_leaves(const KdTree& tree, const LeafReferences& ref
     const LeafLimit limit{split, static_cast<std::size_t>(leaf_size)};
     const KdBranch merged = LeafMerger({tree, references_of}, limit, control).branch(0, 0, tree.primitives);
     if (control.cancelled) return {};
-    KdSubtree whole = assemble(merged);
-    KdTree result;
-    result.nodes = std::move(whole.nodes);
-    result.references = std::move(whole.references);
-    result.bounds = tree.bounds;
-    result.primitives = tree.primitives;
-    return result;
+    return assemble(merged, tree.bounds, tree.primitives);
 }
 
 std::optional<KdTree> merge_leaves(const KdTree& tree, KdSplit split, int leaf_size, BuildControl& control) {

@@ -167,7 +167,7 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
     const DoubleTag dd;
     const hn::Rebind<float, DoubleTag> df;
     for (std::size_t i = 0; i < candidates_.size; i += kDoubles) {
-        // Past the last candidate lie earlier ones or zeros, whose results are dropped.
+        // What lies past the last candidate is arbitrary; its results are dropped.
         const auto ray = [&](std::size_t k) HWY_ATTR { return hn::Load(dd, candidates_.ray[k] + i); };
         const auto vertex = [&](std::size_t k)
                                 HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df, candidates_.vertex[k] + i)); };
