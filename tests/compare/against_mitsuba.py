@@ -80,7 +80,8 @@ def run_mitsuba(arguments, seed, folder):
     done = subprocess.run(["taskset", "-c", "0", *command], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(done.stderr.strip())
-    return json.loads(done.stdout), np.load(output).astype(np.float64)
+    # Mitsuba's warnings are printed before.
+    return json.loads(done.stdout.splitlines()[-1]), np.load(output).astype(np.float64)
 
 
 def run_rayuela(arguments, seed, folder):

@@ -9,6 +9,10 @@ import mitsuba as mi
 import numpy as np
 
 
+# Half the side of the square that stands for an infinite plane: farther, and floats blur what stands on it.
+PLANE_REACH = 1e3
+
+
 class Unsupported(Exception):
     pass
 
@@ -89,6 +93,12 @@ def shape(entry, name, folder, scratch):
         u, v, p = (np.array(entry[key], dtype=float) for key in ("u", "v", "point"))
         normal = np.cross(u, v) / np.linalg.norm(np.cross(u, v))
         return {"type": "rectangle"}, to_world @ flat([u / 2, v / 2, normal], p + (u + v) / 2)
+    if kind == "plane":
+        normal = np.array(entry["normal"], dtype=float) / np.linalg.norm(entry["normal"])
+        u = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+        u /= np.linalg.norm(u)
+        sides = PLANE_REACH * u, PLANE_REACH * np.cross(normal, u), normal
+        return {"type": "rectangle"}, to_world @ flat(sides, entry["point"])
     if kind == "box":
         lo, hi = np.array(entry["min"], dtype=float), np.array(entry["max"], dtype=float)
         return {"type": "cube"}, to_world @ flat(np.diag((hi - lo) / 2), (hi + lo) / 2)
@@ -101,6 +111,17 @@ def shape(entry, name, folder, scratch):
         smooth = path.suffix == ".obj" and re.search(r"^vn ", path.read_text(errors="replace"), re.MULTILINE)
         return {"type": path.suffix[1:], "filename": str(path), "face_normals": not smooth}, to_world
     raise Unsupported(f"{name}: a {kind} has no counterpart")
+
+
+def flattened(objects, parent=np.eye(4)):
+    """Each visible object that is no list, with what takes the space of its list to the world."""
+    for entry in objects:
+        if not entry.get("visible", True):
+            continue
+        if entry["type"] == "list":
+            yield from flattened(entry["objects"], parent @ matrix(entry.get("transform", {})))
+        else:
+            yield entry, parent
 
 
 def sensor(scene):
@@ -136,12 +157,10 @@ def convert(path, scratch):
               "integrator": {"type": "path", "max_depth": bounces + 1, "rr_depth": 5}}
     if scene.get("environment"):
         result["environment"] = environment(scene["environment"])
-    for i, entry in enumerate(scene["objects"]):
+    for i, (entry, parent) in enumerate(flattened(scene["objects"])):
         name = f"object_{i}"
-        if not entry.get("visible", True):
-            continue
         made, to_world = shape(entry, name, folder, scratch)
-        made["to_world"] = mi.ScalarTransform4f(to_world)
+        made["to_world"] = mi.ScalarTransform4f(parent @ to_world)
         material = scene["materials"][entry["material"]]
         surface = bsdf(material, f"materials.{entry['material']}")
         if surface:
