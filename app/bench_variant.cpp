@@ -43,6 +43,7 @@ void visit_settings(RenderSettings& render, VariantScene& variant, const Visitor
     PathTracerOptions& options = variant.options;
     visit_render_fields(render, [&](auto& value, const SettingField& field) { visit(field.key, value); });
     visit("light_sampling", options.light_sampling);
+    visit("light_tracing", options.light_tracing);
     visit("mis", options.mis);
     visit("russian_roulette", options.russian_roulette);
     for (const ShortcutField& shortcut : kShortcuts) visit(shortcut.key, options.shortcuts.*shortcut.member);

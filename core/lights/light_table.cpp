@@ -8,14 +8,14 @@
 namespace rayuela {
 
 LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<const Material* const> materials,
-                       const Environment& environment) {
+                       const Environment& environment, LightChoice choice) {
     std::vector<std::uint32_t> first_light(instances.size(), kNone);
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const auto first = static_cast<std::uint32_t>(lights_.size());
         append_lights(instances[i], *materials[i], lights_);
         if (lights_.size() > first) first_light[i] = first;
     }
-    tree_ = LightTree(lights_);
+    tree_ = LightTree(lights_, choice);
     if (tree_.empty()) {
         lights_.clear();
     } else {
@@ -25,7 +25,7 @@ LightTable::LightTable(std::span<const GeometryInstance> instances, std::span<co
 
     const EnvironmentLight light(environment);
     if (!light.image()) {
-        few_ = FewLamps::of(lights_, tree_);
+        if (choice == LightChoice::arriving) few_ = FewLamps::of(lights_, tree_);
         return;
     }
     auto distribution = std::make_shared<const EnvironmentDistribution>(light);

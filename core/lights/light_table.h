@@ -26,7 +26,7 @@ public:
     LightTable() = default;
     /// materials[i] belongs to instances[i] and is never null.
     LightTable(std::span<const GeometryInstance> instances, std::span<const Material* const> materials,
-               const Environment& environment);
+               const Environment& environment, LightChoice choice = LightChoice::arriving);
 
     /// The same lights, where the object that had number from[i] has number to[i] now, of `objects` in all.
     LightTable renumbered(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to,

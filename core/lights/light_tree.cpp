@@ -202,14 +202,15 @@ struct LightTree::Builder {
     }
 };
 
-LightTree::LightTree(std::span<const AreaLight> lights) {
+LightTree::LightTree(std::span<const AreaLight> lights, LightChoice choice) : choice_(choice) {
     std::vector<Cluster> clusters;
     double total = 0;
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
         const AreaLight& light = lights[i];
-        const double power = light.power();
+        double power = light.power();
         const Bounds3 bounds = bounds_of(light);
         if (!(power > 0 && std::isfinite(power) && is_finite(bounds.lo) && is_finite(bounds.hi))) continue;
+        if (choice == LightChoice::uniform) power = 1;
         const bool sphere = light.kind == AreaLight::Kind::sphere;
         clusters.push_back({.bounds = bounds,
                             .normals = {sphere ? Vec3d(0, 0, 1) : Vec3d(light.normal), sphere ? std::numbers::pi : 0},
@@ -230,11 +231,15 @@ LightTree::LightTree(std::span<const AreaLight> lights) {
     nodes_.shrink_to_fit();
 }
 
+LightClusters::Lanes<float> LightTree::weights(const LightReceiver& receiver, const LightClusters& clusters) const {
+    return choice_ == LightChoice::arriving ? light_importance(receiver, clusters) : clusters.power;
+}
+
 std::optional<LightTree::Draw> LightTree::draw(const LightReceiver& receiver, float u) const {
     if (nodes_.empty()) return Draw{only_light_, 1, u};
     float probability = 1;
     for (const Node* node = nodes_.data();;) {
-        const LightClusters::Lanes<float> sent = light_importance(receiver, node->clusters);
+        const LightClusters::Lanes<float> sent = weights(receiver, node->clusters);
         const float total = sum(sent);
         if (!(total > 0 && total < kInfinity)) return std::nullopt;  // none, or beyond the range of float
         float rest = u * total;
@@ -259,7 +264,7 @@ float LightTree::probability(const LightReceiver& receiver, std::uint32_t light)
     auto [node, lane] = places_[light];
     if (node == kNone) return 0;
     for (; node != kNone; lane = nodes_[node].lane_of_parent, node = nodes_[node].parent) {
-        const LightClusters::Lanes<float> sent = light_importance(receiver, nodes_[node].clusters);
+        const LightClusters::Lanes<float> sent = weights(receiver, nodes_[node].clusters);
         const float total = sum(sent);
         if (!(total > 0 && total < kInfinity)) return 0;
         probability *= sent[lane] / total;

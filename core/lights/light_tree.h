@@ -2,6 +2,7 @@
 
 #include "core/lights/area_light.h"
 #include "core/lights/light_importance.h"
+#include "core/scene/light_choice.h"
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +12,7 @@
 namespace rayuela {
 
 /// A tree over lights with kClusters children a node, descended at random: at each node towards a child in proportion to the
-/// light it is estimated to send to the receiver, by power, distance and the angles on either side. Conty Estevez & Kulla,
+/// light it is estimated to send to the receiver, by power, distance and the angles on either side, or as LightChoice says. Conty Estevez & Kulla,
 /// "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, in the conservative form of PBRT 4th ed.,
 /// 12.6.3: only what cannot light the receiver is never drawn. Scaling a scene by a power of two changes nothing.
 class LightTree {
@@ -24,7 +25,7 @@ public:
 
     LightTree() = default;
     /// Lights without power are left out. Builds in parallel on the calling thread's task arena.
-    explicit LightTree(std::span<const AreaLight> lights);
+    explicit LightTree(std::span<const AreaLight> lights, LightChoice choice = LightChoice::arriving);
 
     /// Whether there is nothing to draw: then `draw` and `probability` must not be called.
     bool empty() const { return light_count_ == 0; }
@@ -56,11 +57,14 @@ private:
     struct Cluster;
     struct Builder;
 
+    LightClusters::Lanes<float> weights(const LightReceiver& receiver, const LightClusters& clusters) const;
+
     static constexpr std::uint32_t kLeaf = 0x80000000u;
 
     std::vector<Node> nodes_;    ///< The root first. None where there is but one light.
     std::vector<Place> places_;  ///< Of each light.
     std::uint32_t light_count_ = 0, only_light_ = 0;
+    LightChoice choice_ = LightChoice::arriving;
 };
 
 }  // namespace rayuela

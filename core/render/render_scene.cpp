@@ -167,7 +167,7 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
     if (materials || (objects && next->used_materials() != previous->used_materials())) next->pack_materials();
     if (geometry || next->textured_objects() != previous->textured_objects()) next->find_surfaces();
     if (!previous || changes.environment) next->environment_ = EnvironmentLight(next->scene_->environment);
-    const bool may_shine = materials || objects || changes.environment;
+    const bool may_shine = materials || objects || changes.environment || changes.sampling;
     const bool same_lights = !may_shine || next->update_lights(previous);
     next->features_ = next->find_features();
     if (may_shine) next->update_emission(previous, same_lights);
@@ -215,11 +215,13 @@ void RenderScene::find_surfaces() {
 bool RenderScene::update_lights(const RenderScene* previous) {
     const bool panorama = environment_.image() || (previous && previous->environment_.image());
     const bool sky = previous && panorama && scene_->environment != previous->scene_->environment;
-    const bool same = previous && !sky && same_lamps(*previous);
+    const bool same_choice = previous && scene_->render.light_choice == previous->scene_->render.light_choice;
+    const bool same = same_choice && !sky && same_lamps(*previous);
     if (!same) {
         std::vector<const Material*> of_instances;
         for (const FlatObject& object : *objects_) of_instances.push_back(&(*materials_)[object.material].material);
-        lights_ = std::make_shared<const LightTable>(accelerator_->instances(), of_instances, scene_->environment);
+        lights_ = std::make_shared<const LightTable>(accelerator_->instances(), of_instances, scene_->environment,
+                                                     scene_->render.light_choice);
         return false;
     }
     const std::vector<std::uint32_t> from = previous->objects_with(&PackedMaterial::emissive);

@@ -7,6 +7,7 @@
 #include "core/math/transform.h"
 #include "core/scene/camera.h"
 #include "core/scene/environment.h"
+#include "core/scene/light_choice.h"
 #include "core/shapes/shape.h"
 
 #include <optional>
@@ -51,6 +52,7 @@ struct RenderSettings {
     std::optional<int> rr_start;  ///< First bounce that Russian roulette may cut; empty: the renderer's choice.
     AccelSettings accel;
     SamplerKind sampler = SamplerKind::sobol;
+    LightChoice light_choice = LightChoice::arriving;
     std::uint32_t seed = 0;
     int max_samples = 0;     ///< Stop at so many samples a pixel; 0 never.
     double max_seconds = 0;  ///< Stop after so much rendering; 0 never.

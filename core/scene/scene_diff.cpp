@@ -56,7 +56,7 @@ bool changed_assignment(const Scene& before, const Scene& after) {
 bool same_sampling(const Scene& a, const Scene& b) {
     return a.film.filter == b.film.filter && a.render.max_bounces == b.render.max_bounces &&
            a.render.rr_start == b.render.rr_start && a.render.sampler == b.render.sampler &&
-           a.render.seed == b.render.seed;
+           a.render.light_choice == b.render.light_choice && a.render.seed == b.render.seed;
 }
 
 }  // namespace

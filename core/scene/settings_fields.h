@@ -15,6 +15,8 @@ inline constexpr std::array<std::string_view, 3> kEnumNames<PixelFilter>{"box", 
 template <>
 inline constexpr std::array<std::string_view, 2> kEnumNames<SamplerKind>{"independent", "sobol"};
 template <>
+inline constexpr std::array<std::string_view, 3> kEnumNames<LightChoice>{"uniform", "power", "arriving"};
+template <>
 inline constexpr std::array<std::string_view, 2> kEnumNames<AcceleratorKind>{"list", "kd"};
 template <>
 inline constexpr std::array<std::string_view, 2> kEnumNames<KdSplit>{"median", "sah"};
@@ -50,6 +52,7 @@ void visit_render_fields(Self& render, Visitor&& visit) {
     visit(render.accel.leaf_size, SettingField{"kd_leaf_size", kMinLeafSize, kMaxLeafSize});
     visit(render.accel.split, SettingField{"kd_split"});
     visit(render.sampler, SettingField{"sampler"});
+    visit(render.light_choice, SettingField{"light_choice"});
     visit(render.seed, SettingField{"seed", 0, 4294967295.0});
     visit(render.max_samples, SettingField{"max_samples", 0, 2147483647.0});
     visit(render.max_seconds, SettingField{"max_seconds"});

@@ -80,7 +80,7 @@ TEST(SceneFile, TheExampleOfTheFormat) {
         {"type": "list", "name": "group", "objects": [{"type": "sphere"}, {"type": "list", "objects": [{"type": "box"}]}]}
       ],
       "render": {"max_bounces": 3, "rr_start": 2, "accelerator": "list", "kd_leaf_size": 500, "kd_split": "median",
-                 "sampler": "independent", "seed": 4294967295, "max_samples": 64, "max_seconds": 0.1}
+                 "sampler": "independent", "light_choice": "power", "seed": 4294967295, "max_samples": 64, "max_seconds": 0.1}
     })");
     EXPECT_EQ(scene.film.width, 640);
     EXPECT_TRUE(std::holds_alternative<GradientEnvironment>(scene.environment));
@@ -103,6 +103,7 @@ TEST(SceneFile, TheExampleOfTheFormat) {
     EXPECT_EQ(scene.render.accel.leaf_size, 500);
     EXPECT_EQ(scene.render.accel.split, KdSplit::median);
     EXPECT_EQ(scene.render.sampler, SamplerKind::independent);
+    EXPECT_EQ(scene.render.light_choice, LightChoice::power);
     EXPECT_EQ(scene.render.seed, 4294967295u);
     EXPECT_EQ(scene.render.max_seconds, 0.1);
     EXPECT_TRUE(validate(scene).empty());
@@ -150,6 +151,7 @@ TEST(SceneFile, EveryFieldOfEveryKindRoundTrips) {
         scene.render.accel = {static_cast<AcceleratorKind>(rng() % 2), 1 + static_cast<int>(rng() % 64),
                               static_cast<KdSplit>(rng() % 2)};
         scene.render.sampler = static_cast<SamplerKind>(rng() % 2);
+        scene.render.light_choice = static_cast<LightChoice>(rng() % 3);
         scene.render.seed = static_cast<std::uint32_t>(rng());
         scene.render.max_seconds = static_cast<double>(rng()) / 7;
         ASSERT_TRUE(validate(scene).empty()) << to_string(validate(scene));

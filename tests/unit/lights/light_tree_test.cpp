@@ -98,6 +98,29 @@ TEST(LightTree, DrawsFollowTheirProbabilities) {
     }
 }
 
+TEST(LightTree, ChoosesAllAlikeOrByPowerWhereverTheReceiverIs) {
+    const std::vector<AreaLight> lights = random_lights(300);
+    double total = 0, shining = 0;
+    for (const AreaLight& light : lights) {
+        total += light.power();
+        shining += light.power() > 0 ? 1 : 0;
+    }
+    const LightTree uniform(lights, LightChoice::uniform), by_power(lights, LightChoice::power);
+    std::vector<int> drawn(lights.size());
+    constexpr int kDraws = 1 << 16;
+    for (std::uint32_t k = 0; k < kDraws; ++k) {
+        const auto draw = uniform.draw(random_receiver(k % 8), Sampler(SamplerKind::sobol, 1, 0, k).get_1d(0));
+        ASSERT_TRUE(draw.has_value());
+        ++drawn[draw->light];
+    }
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        const double power = lights[i].power(), alike = power > 0 ? 1 / shining : 0;
+        EXPECT_NEAR(uniform.probability(random_receiver(i), i), alike, 1e-6 * alike) << i;
+        EXPECT_NEAR(by_power.probability(random_receiver(i), i), power / total, 1e-5 * power / total) << i;
+        EXPECT_NEAR(drawn[i], kDraws * alike, 8) << i;
+    }
+}
+
 TEST(LightTree, WhateverLightsTheReceiverCanBeDrawn) {
     const std::vector<AreaLight> lights = random_lights(400);
     const LightTree tree(lights);

@@ -115,6 +115,15 @@ TEST_F(Rebuilds, TheColourOfALampRebuildsTheLights) {
     EXPECT_FALSE(same_emission(before, after));
 }
 
+TEST_F(Rebuilds, AnotherChoiceOfLampsRebuildsTheLights) {
+    scene.render.light_choice = LightChoice::uniform;
+    const Version after = next(before, scene);
+    EXPECT_EQ(after.built, 0u);
+    EXPECT_TRUE(same_trees(before, after));
+    EXPECT_FALSE(same_lights(before, after));
+    EXPECT_TRUE(same_lights(after, next(after, scene)));
+}
+
 /// A quad is numbered before a sphere that the scene lists before it: the lamps are the same, by other numbers.
 TEST_F(Rebuilds, LampsThatAreNumberedAnewStayTheSame) {
     add_object(scene, Quad{}, scene.materials[kClay].id);

@@ -62,6 +62,7 @@ TEST(SceneDiff, EachPartAlone) {
     EXPECT_EQ(changes_by([](Scene& s) { s.render.max_bounces = 9; }), SceneChanges{.sampling = true});
     EXPECT_EQ(changes_by([](Scene& s) { s.render.rr_start = 9; }), SceneChanges{.sampling = true});
     EXPECT_EQ(changes_by([](Scene& s) { s.render.seed = 9; }), SceneChanges{.sampling = true});
+    EXPECT_EQ(changes_by([](Scene& s) { s.render.light_choice = LightChoice::power; }), SceneChanges{.sampling = true});
     EXPECT_EQ(changes_by([](Scene& s) { s.environment = ConstantEnvironment{}; }), SceneChanges{.environment = true});
 }
 
