@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -132,6 +133,24 @@ inline std::vector<Vec3d> means(const Film& film) {
         result.push_back(film.mean(i));
     }
     return result;
+}
+
+/// Largest difference of a channel from that of the other image times the factor, as a share of it.
+inline double difference(const Image& image, const Image& other, const Color& factor = Color(1)) {
+    double largest = image.pixels.size() == other.pixels.size() ? 0 : INFINITY;
+    for (std::size_t i = 0; i < std::min(image.pixels.size(), other.pixels.size()); ++i) {
+        const Vec3d a(image.pixels[i]), b = Vec3d(other.pixels[i]) * Vec3d(factor);
+        for (int c = 0; c < 3; ++c) {
+            if (a[c] != b[c]) largest = std::max(largest, std::abs(a[c] / b[c] - 1));
+        }
+    }
+    return largest;
+}
+
+/// What a session shows must be the image of a fresh start: to the bit, or but for rounding where the light was edited.
+inline bool is_fresh(const Frame& shown, const Frame& fresh) {
+    return shown.statistics.relit == 0 ? shown.image.pixels == fresh.image.pixels
+                                       : difference(shown.image, fresh.image) < 1e-5;
 }
 
 /// Mean over all pixels, and over those between the given fractions of the film's width.

@@ -96,7 +96,7 @@ bool radiance_control(const char* id, Color& value) {
     const float width = ImGui::CalcItemWidth();
     ImGui::PushID(id);
     const bool color_edited = ImGui::ColorEdit3("##color", &edited.x, kColorFlags | ImGuiColorEditFlags_NoInputs);
-    tooltip("Colour of the light; its strength stands beside it.");
+    tooltip("Colour of the light; its strength stands beside it. Where there is no other light, samples go on.");
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
     ImGui::SetNextItemWidth(width - ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x);
     const bool intensity_edited =

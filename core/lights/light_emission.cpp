@@ -47,6 +47,17 @@ LightEmission LightEmission::renumbered(std::shared_ptr<const LightTable> table)
     return emission;
 }
 
+bool LightEmission::draws_like(const LightEmission& other) const {
+    constexpr float kRounding = 64 * kUnitRoundoff;
+    const std::size_t lights = table_->lights().size();
+    if (other.table_->lights().size() != lights) return false;
+    for (std::uint32_t i = 0; i < lights; ++i) {
+        const float a = choice_.probability(i), b = other.choice_.probability(i);
+        if (std::abs(a - b) > kRounding * a) return false;
+    }
+    return true;
+}
+
 std::optional<EmittedRay> LightEmission::sample(float u_light, const Vec2& u_point, float u_target,
                                                 const Vec2& u_direction) const {
     const AliasTable::Draw draw = choice_.draw(u_light);

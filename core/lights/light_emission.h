@@ -32,6 +32,8 @@ public:
 
     const Targets& targets() const { return targets_; }
     bool empty() const { return choice_.empty(); }
+    /// Whether both draw from as many lights with the same probabilities, but for rounding.
+    bool draws_like(const LightEmission& other) const;
     /// The share of the directions around a target in which a lamp lies, so the chance that a path scattered by one finds a
     /// lamp: the harmonic mean over lamps and targets, weighed by the light they exchange, as noise goes with its inverse.
     float lamp_share() const { return lamp_share_; }

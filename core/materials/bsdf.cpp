@@ -55,8 +55,21 @@ Color emitted(const Material& material, const Vec2& uv, bool front) {
     });
 }
 
+Color emission_scale(const Material& material) {
+    return of_emission(material, Color(0), [](const Emission& e) { return e.strength * e.color.value; });
+}
+
+Material put_out(Material material) {
+    std::visit(
+        [](auto& m) {
+            if constexpr (kEmits<std::decay_t<decltype(m)>>) m.put_out();
+        },
+        material);
+    return material;
+}
+
 bool is_emissive(const Material& material) {
-    return of_emission(material, false, [](const Emission& e) { return !is_black(e.strength * e.color.value); });
+    return !is_black(emission_scale(material));
 }
 
 bool emits_two_sided(const Material& material) {

@@ -49,6 +49,10 @@ Bsdf make_bsdf(const Material& material, const Vec2& uv);
 /// Radiance leaving the surface towards a viewer on its front or back.
 Color emitted(const Material& material, const Vec2& uv, bool front);
 
+/// What `emitted` is in proportion to, channel by channel.
+Color emission_scale(const Material& material);
+/// The same material where that is 0.
+Material put_out(Material material);
 /// Whether `emitted` can be other than black.
 bool is_emissive(const Material& material);
 /// Whether the back emits as well.

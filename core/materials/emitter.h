@@ -40,6 +40,7 @@ struct Emitter {
     bool transmits() const { return false; }
     bool has_delta_lobe() const { return false; }
     Emission emission() const { return {radiance, 1, two_sided}; }
+    void put_out() { radiance.value = Color(0); }
     bool operator==(const Emitter&) const = default;
 };
 

@@ -122,6 +122,10 @@ struct Principled {
         return is_smooth_everywhere(roughness) || (clearcoat > 0 && alpha_of(clearcoat_roughness) < kSmoothAlpha);
     }
     Emission emission() const { return {emissive, emissive_strength, false}; }
+    void put_out() {
+        emissive.value = Color(0);
+        emissive_strength = 0;
+    }
     bool operator==(const Principled&) const = default;
 };
 

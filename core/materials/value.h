@@ -23,7 +23,8 @@ struct FloatValue {
     bool operator==(const FloatValue&) const = default;
 };
 
-/// The light a material gives off: strength times the colour, from its front and, where two-sided, from its back.
+/// The light a material gives off: strength times the colour, from its front and, where two-sided, from its back. A
+/// material that has one can be put out: then all that this says of how much light it is, but for the texture, is 0.
 struct Emission {
     const ColorValue& color;
     float strength = 1;

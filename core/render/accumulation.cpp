@@ -176,16 +176,14 @@ void Accumulation::add_to_all(const PathTracer& tracer, int samples, PassControl
 /// Stops the halves of tiles that have `samples` and need no more, and the rounds.
 void Accumulation::stop_where_enough(int samples) {
     if (next_decision(samples - 1) != samples) return;
-    std::vector<const AdaptiveBlock*> blocks;
     for (Tile& tile : tiles_) {
         if (tile.samples == samples && !is_finished(tile)) tile.adaptive.update_noise(samples);
-        blocks.push_back(&tile.adaptive);
     }
     // Rounds are one more block, of the whole image.
     const double deviation = wants_rounds() ? film_.splat_deviation() : 0;
     const double cost =
         static_cast<double>(round_rays_) / std::max(1u, film_.rounds()) / static_cast<double>(object_ids_.size());
-    std::array<double, 2> mean = mean_burden(blocks);
+    std::array<double, 2> mean = mean_burden(blocks());
     for (double& burden : mean) burden += deviation * std::sqrt(cost);
     for (Tile& tile : tiles_) {
         if (tile.samples == samples) tile.adaptive.stop_where_enough(samples, mean, options_.target_error);
@@ -193,6 +191,51 @@ void Accumulation::stop_where_enough(int samples) {
     if (!wants_rounds()) return;
     const double wanted = samples_wanted(deviation, cost, (mean[0] + mean[1]) / 2, options_.target_error);
     rounds_finished_ = deviation == 0 || samples >= wanted;
+}
+
+std::vector<const AdaptiveBlock*> Accumulation::blocks() const {
+    std::vector<const AdaptiveBlock*> blocks;
+    for (const Tile& tile : tiles_) blocks.push_back(&tile.adaptive);
+    return blocks;
+}
+
+bool Accumulation::scale_light(const Vec3d& factor) {
+    const auto rejected = film_.rejected();
+    const bool all_accepted = std::ranges::all_of(rejected, [](std::uint64_t count) { return count == 0; });
+    if (samples() == 0 || options_.clamp > 0 || !all_accepted) return false;
+    std::vector<std::array<double, 2>> luminances;
+    if (adapts()) {
+        for (const Tile& tile : tiles_) luminances.push_back(luminance_sums(tile));
+    }
+    film_.scale(factor);
+    if (adapts()) scale_noise(luminances);
+    return true;
+}
+
+std::array<double, 2> Accumulation::luminance_sums(const Tile& tile) const {
+    std::array<double, 2> sums{};
+    for_each_pixel(tile, [&](int x, int y) {
+        const auto pixel = static_cast<std::size_t>(y * film_.width() + x);
+        for (std::size_t half = 0; half < sums.size(); ++half) sums[half] += film_.luminance_sum(pixel, half);
+    });
+    return sums;
+}
+
+/// What is known of the noise is scaled as the film of each half has been, so that halves still judge each other only.
+/// Blocks whose noise counts for more now go on.
+void Accumulation::scale_noise(const std::vector<std::array<double, 2>>& luminances_before) {
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        std::array<double, 2> factors = luminance_sums(tiles_[i]);
+        for (std::size_t half = 0; half < factors.size(); ++half)
+            factors[half] = luminances_before[i][half] > 0 ? factors[half] / luminances_before[i][half] : 1;
+        tiles_[i].adaptive.scale(factors);
+    }
+    const std::array<double, 2> mean = mean_burden(blocks());
+    for (Tile& tile : tiles_) {
+        if (tile.adaptive.stopped_too_early(mean, options_.target_error))
+            tile.samples = tile.adaptive.resume(tile.samples);
+    }
+    rounds_finished_ = false;
 }
 
 /// All light paths that go with one sample of every pixel, or none where `control` does not allow.

@@ -50,6 +50,10 @@ public:
     /// What the clamp has taken from the image.
     ClampLoss clamp_loss() const;
 
+    /// Light of all sources has changed by this factor, channel by channel: multiplies what is there by it, and goes on
+    /// where less noise is asked for now. False, and nothing happens, where what is there is no image yet, or would not have
+    /// changed in proportion: the clamp is at work, or samples have been rejected.
+    bool scale_light(const Vec3d& factor);
     /// Forgets all samples. Costs nothing now: a tile is cleared when its first sample comes.
     void restart();
     /// Clears the tiles that have no sample since the restart, for a look at an incomplete film.
@@ -79,6 +83,9 @@ private:
     bool wants_rounds() const { return film_.rounds() > 0 && !(adapts() && rounds_finished_); }
     void make_tiles();
     void stop_where_enough(int samples);
+    std::vector<const AdaptiveBlock*> blocks() const;
+    std::array<double, 2> luminance_sums(const Tile& tile) const;
+    void scale_noise(const std::vector<std::array<double, 2>>& luminances_before);
 
     SamplingOptions options_;
     std::uint64_t round_rays_ = 0;  ///< Of all rounds.

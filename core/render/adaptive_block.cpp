@@ -78,10 +78,34 @@ int AdaptiveBlock::shown(std::size_t half) const {
 
 void AdaptiveBlock::stop_where_enough(int samples, const std::array<double, 2>& mean, double target_error) {
     if (!knows_noise()) return;
-    for (std::size_t half = 0; half < halves_.size(); ++half) {
-        const std::size_t judge = 1 - half;
-        halves_[half].stopped |= samples >= samples_wanted(deviation(judge), cost(judge), mean[judge], target_error);
+    for (std::size_t half = 0; half < halves_.size(); ++half)
+        halves_[half].stopped |= samples >= samples_wanted(half, mean, target_error);
+}
+
+/// As the other half sees it.
+double AdaptiveBlock::samples_wanted(std::size_t half, const std::array<double, 2>& mean, double target_error) const {
+    const std::size_t judge = 1 - half;
+    return rayuela::samples_wanted(deviation(judge), cost(judge), mean[judge], target_error);
+}
+
+void AdaptiveBlock::scale(const std::array<double, 2>& factors) {
+    for (std::size_t h = 0; h < halves_.size(); ++h) {
+        Half& half = halves_[h];
+        const double mean = half.sum / std::max(1.0, half.count), scaled = mean * factors[h];
+        half.variance *=
+            factors[h] * factors[h] * (mean * mean + kDarkRegularizer) / (scaled * scaled + kDarkRegularizer);
+        half.sum *= factors[h];
     }
+    for (auto& contrast : contrast_) {
+        for (std::size_t h = 0; h < halves_.size(); ++h) contrast[h] *= static_cast<float>(factors[h]);
+    }
+}
+
+bool AdaptiveBlock::stopped_too_early(const std::array<double, 2>& mean, double target_error) const {
+    for (std::size_t half = 0; half < halves_.size(); ++half) {
+        if (stopped(half) && halves_[half].shown < samples_wanted(half, mean, target_error)) return true;
+    }
+    return false;
 }
 
 int AdaptiveBlock::resume(int samples) {

@@ -67,10 +67,16 @@ public:
     /// Stops each half that has as many samples as the other one finds it should: `samples` are traced, `mean` is the
     /// image's mean_burden. Does nothing before there is noise to go by.
     void stop_where_enough(int samples, const std::array<double, 2>& mean, double target_error);
+    /// All luminances of each half have been multiplied by a factor.
+    void scale(const std::array<double, 2>& factors);
+    /// Whether a half shows less than `stop_where_enough` would ask for now.
+    bool stopped_too_early(const std::array<double, 2>& mean, double target_error) const;
     /// Lets both halves go on; returns the sample to go on with, so that both get all of theirs.
     int resume(int samples);
 
 private:
+    double samples_wanted(std::size_t half, const std::array<double, 2>& mean, double target_error) const;
+
     struct Half {
         bool stopped = false;
         std::uint32_t shown = 0;  ///< Its samples below this number are in the film.

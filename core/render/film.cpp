@@ -15,6 +15,14 @@ double luminance(const Vec3d& c) {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
+/// Of a pixel or of its splats.
+void scale_sums(auto& sums, const Vec3d& factor) {
+    const double before = luminance(sums.sum[0] + sums.sum[1]);
+    for (Vec3d& sum : sums.sum) sum *= factor;
+    const double ratio = before > 0 ? luminance(sums.sum[0] + sums.sum[1]) / before : 0;
+    sums.luminance_squared *= ratio * ratio;
+}
+
 }  // namespace
 
 std::optional<Rejection> rejection(const Color& radiance) {
@@ -56,6 +64,14 @@ void Film::clear_splats() {
     rounds_ = {};
 }
 
+void Film::scale(const Vec3d& factor) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels_.size(), 16384), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) scale_sums(pixels_[i], factor);
+        if (splats_.empty()) return;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) scale_sums(splats_[i], factor);
+    });
+}
+
 bool Film::count_rejection(const Color& radiance) {
     const auto cause = rejection(radiance);
     if (cause) rejected_[static_cast<std::size_t>(*cause)].fetch_add(1, std::memory_order_relaxed);
@@ -64,6 +80,10 @@ bool Film::count_rejection(const Color& radiance) {
 
 void Film::clear_rejected() {
     for (auto& count : rejected_) count = 0;
+}
+
+double Film::luminance_sum(std::size_t pixel, std::size_t half) const {
+    return luminance(pixels_[pixel].sum[half]);
 }
 
 Vec3d Film::mean(std::size_t pixel) const {

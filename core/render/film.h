@@ -37,6 +37,11 @@ public:
     /// Forgets all rounds.
     void clear_splats();
 
+    /// Multiplies all that has been added by a factor a channel. An estimate without bias, times a number, is one of the image
+    /// times that number, whatever chance has decided on the way. Squares are scaled as if all samples of a pixel had the
+    /// hue of their sum. Rounds a sum once: 2^28 times are needed for what the rounding of a float image is.
+    void scale(const Vec3d& factor);
+
     /// Whether a pixel is the mean of its halves' means instead of the mean of its samples. Where the number of samples in a
     /// half depends on what the other half found, only that is unbiased (see AdaptiveBlock).
     void set_equal_halves(bool equal) { equal_halves_ = equal; }
@@ -49,6 +54,8 @@ public:
     std::uint64_t count(std::size_t pixel) const {
         return pixels_[pixel].count[0] + std::uint64_t(pixels_[pixel].count[1]);
     }
+    /// Luminance of the sum of the samples of one half.
+    double luminance_sum(std::size_t pixel, std::size_t half) const;
     /// What the pixel shows; black where it has no samples.
     Vec3d mean(std::size_t pixel) const;
     /// Estimated variance of the mean's luminance, for independent samples. 0 below two samples.

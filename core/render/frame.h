@@ -56,6 +56,7 @@ struct RenderStatistics {
     AccelStats accel;
     std::uint64_t memory_bytes = 0;  ///< Trees, meshes, images and film.
     std::uint64_t restarts = 0;      ///< How often accumulation has started anew since the session began.
+    std::uint64_t relit = 0;         ///< How often what was there has been scaled to other light since.
     Shortcuts shortcuts;             ///< Those in use.
     int threads = 0;
     bool adaptive = false;  ///< Samples go where the noise is.

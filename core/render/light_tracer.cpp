@@ -32,6 +32,10 @@ constexpr std::uint32_t kGroup = 4096;
 /// Keeps lamp paths apart from pixels, of which there are fewer.
 constexpr std::uint32_t kFirstGroup = 0x80000000u;
 
+bool are_small(const LightEmission& emission) {
+    return emission.lamp_share() < kSmallLampShare;
+}
+
 }  // namespace
 
 LightTracer::LightTracer(const RenderScene& scene, const CameraRays& camera, int width, int height)
@@ -39,10 +43,15 @@ LightTracer::LightTracer(const RenderScene& scene, const CameraRays& camera, int
       camera_(camera),
       width_(width),
       height_(height),
-      small_lamps_(scene.emission()->lamp_share() < kSmallLampShare),
+      small_lamps_(are_small(*scene.emission())),
       paths_(static_cast<std::uint32_t>(std::ceil((small_lamps_ ? kPathsPerPixel : kPathsPerPixelOfLargeLamps) *
                                                   static_cast<float>(width) * static_cast<float>(height)))),
       pixels_(static_cast<float>(width) * static_cast<float>(height)) {}
+
+bool LightTracer::shares_alike(const RenderScene& a, const RenderScene& b) {
+    if (!a.emission() || !b.emission()) return a.emission() == b.emission();
+    return are_small(*a.emission()) == are_small(*b.emission()) && a.emission()->draws_like(*b.emission());
+}
 
 float LightTracer::camera_density(const Interaction& at, const Vec3& ray_direction, float distance) const {
     return pixels_ * camera_.density(ray_direction) * at.cosine(ray_direction) / (distance * distance);

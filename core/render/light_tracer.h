@@ -65,6 +65,10 @@ public:
     /// For an image of width x height pixels. Keeps references.
     LightTracer(const RenderScene& scene, const CameraRays& camera, int width, int height);
 
+    /// Whether camera paths leave as much to paths from lamps in one scene as in the other, but for rounding: then samples of
+    /// the one and rounds of the other, however many of each, make up an image together.
+    static bool shares_alike(const RenderScene& a, const RenderScene& b);
+
     /// Paths of a round, which is what goes with one sample in every pixel.
     std::uint32_t paths() const { return paths_; }
     /// Whether lamps are so small that camera paths hardly find them by way of a mirror or glass.

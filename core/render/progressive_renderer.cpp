@@ -85,10 +85,11 @@ bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl&
         film_ = std::make_unique<Accumulation>(size.x, size.y);
         film_->set_options(sampling_);
     }
+    const bool restarts = !goes_on(changes, *updated);
     render_scene_ = std::move(updated);
     memory_bytes_ = render_scene_->memory_bytes() + film_->film().memory_bytes();
     if (changes.geometry || changes.accel) build_seconds_ = seconds_since(start);
-    if (changes.restarts()) {
+    if (restarts) {
         restart();
     } else {
         film_unpublished_ |= film_shown_;  // The samples stay, but what is said beside the image has changed.
@@ -96,15 +97,28 @@ bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl&
     return true;
 }
 
+/// Whether the film can be gone on with, for which it is scaled where light has changed.
+bool ProgressiveRenderer::goes_on(const SceneChanges& changes, const RenderScene& next) {
+    if (changes.restarts()) return false;
+    if (changes.light.value_or(Vec3d(1)) == Vec3d(1)) return true;
+    if (!LightTracer::shares_alike(*render_scene_, next)) return false;
+    if (!arena_.execute([&] { return film_->scale_light(*changes.light); })) return false;
+    ++relit_;
+    relit_unpublished_ = true;
+    relit_at_ = Clock::now();
+    return true;
+}
+
 void ProgressiveRenderer::restart() {
     film_->restart();
     if (preview_) preview_->restart();
-    preview_unpublished_ = film_unpublished_ = film_shown_ = false;
+    preview_unpublished_ = film_unpublished_ = film_shown_ = relit_unpublished_ = false;
     preview_done_ = false;
     counts_ = {};
     render_seconds_ = estimated_error_ = 0;
     clamp_loss_ = {};
     taken_at_ = Clock::now();
+    relit_ = 0;
     ++restarts_;
 }
 
@@ -125,7 +139,8 @@ ScheduleState ProgressiveRenderer::schedule_state() const {
             .publish_seconds = publish_seconds_,
             .since_publication = seconds_since(published_at_),
             .unpublished = film_unpublished_,
-            .film_shown = film_shown_};
+            .film_shown = film_shown_,
+            .since_relit = seconds_since(relit_at_)};
 }
 
 std::uint64_t ProgressiveRenderer::paths_of(const Pass& pass) const {
@@ -166,7 +181,8 @@ void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& canc
 }
 
 bool ProgressiveRenderer::publication_due() const {
-    return (preview_unpublished_ && !film_complete()) || publish_now(schedule_state());
+    if (!film_complete()) return preview_unpublished_;
+    return (interactive_ && relit_unpublished_) || publish_now(schedule_state());
 }
 
 std::shared_ptr<const Frame> ProgressiveRenderer::publish(SessionPhase phase, bool flush) {
@@ -192,7 +208,7 @@ std::shared_ptr<const Frame> ProgressiveRenderer::publish(SessionPhase phase, bo
     if (!coarse && !complete_samples) frame->rejected_pixels = source.rejected_pixels();
     if (!coarse) {
         film_shown_ = true;
-        film_unpublished_ = false;
+        film_unpublished_ = relit_unpublished_ = false;
         publish_seconds_ = seconds_since(start);
     }
     if (phase == SessionPhase::finished) preview_.reset();  // The next edit makes it anew: 1 to 12 MB until then.
@@ -222,6 +238,7 @@ RenderStatistics ProgressiveRenderer::statistics(SessionPhase phase) const {
             .accel = render_scene_->accelerator().stats(),
             .memory_bytes = memory_bytes_,
             .restarts = restarts_,
+            .relit = relit_,
             .shortcuts = options_.shortcuts,
             .threads = threads_,
             .adaptive = sampling_.target_error > 0,

@@ -54,6 +54,7 @@ private:
     ScheduleState schedule_state() const;
     glm::ivec2 size_of(const Pass& pass) const;
     bool film_complete() const { return film_->samples() > 0; }
+    bool goes_on(const SceneChanges& changes, const RenderScene& next);
 
     const bool interactive_;
     PathTracerOptions options_;
@@ -70,13 +71,15 @@ private:
 
     std::unique_ptr<Accumulation> film_, preview_;
     bool preview_unpublished_ = false, film_unpublished_ = false, film_shown_ = false;
+    bool relit_unpublished_ = false;  ///< The frame shows other light than the film.
+    Clock::time_point relit_at_{};
     bool preview_done_ = false;
     RayCounts counts_;
     double render_seconds_ = 0, estimated_error_ = 0;
     ClampLoss clamp_loss_;
     double seconds_per_path_ = 0, publish_seconds_ = 0;
     Clock::time_point published_at_{};
-    std::uint64_t version_ = 0, restarts_ = 0;
+    std::uint64_t version_ = 0, restarts_ = 0, relit_ = 0;
 };
 
 }  // namespace rayuela

@@ -174,7 +174,8 @@ void RenderSession::Impl::handle(Mail& received) {
 
 void RenderSession::Impl::take(std::shared_ptr<const Scene> scene) {
     if (!renderer.has_scene() || build->outdated_by(renderer.scene())) report(SessionPhase::building);
-    renderer.take(std::move(scene), build->control);
+    // Shown before a pass, which the next edit may break off.
+    if (renderer.take(std::move(scene), build->control) && renderer.publication_due()) publish();
     const std::lock_guard lock(mutex);
     build.reset();
     status.problem.clear();
@@ -190,15 +191,15 @@ bool RenderSession::Impl::render_next() {
         mail_arrived.wait_for(lock, std::chrono::duration<double>(pass.wait_seconds), [&] { return mail || quitting; });
         return true;
     }
-    const bool coarse = pass.kind == Pass::Kind::coarse;
+    const bool short_anyway = pass.kind == Pass::Kind::coarse || pass.kind == Pass::Kind::brief;
     const bool resting = pass.kind == Pass::Kind::paused || pass.kind == Pass::Kind::finished;
     if (!resting) {
         report(SessionPhase::rendering);
         paths_done = 0;
         paths_wanted = renderer.paths_of(pass);
-        renderer.render(pass, coarse ? quitting : interrupted, paths_done);
+        renderer.render(pass, short_anyway ? quitting : interrupted, paths_done);
     }
-    if ((!interrupted || coarse) && renderer.publication_due()) publish();
+    if ((!interrupted || short_anyway) && renderer.publication_due()) publish();
     if (resting) report(phase_of(pass));
     return !resting;
 }

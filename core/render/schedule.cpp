@@ -7,7 +7,7 @@ namespace rayuela {
 
 namespace {
 
-constexpr double kCoarseSeconds = 0.012;      ///< Of a coarse pass: leaves room to draw 30 times a second in software.
+constexpr double kCoarseSeconds = 0.012;      ///< Of a pass for one edit: room to draw 30 times a second in software.
 constexpr double kQuietSeconds = 0.08;        ///< Without edits, after which the film's turn has come.
 constexpr int kCoarsestDivisor = 16;          ///< Below this a preview shows nothing.
 constexpr double kGuessedPathSeconds = 2e-6;  ///< Before anything was measured.
@@ -62,6 +62,12 @@ Pass next_pass(const ScheduleState& state) {
     if (sampled || timed_out || converged) return {.kind = Pass::Kind::finished};
     if (state.paused && complete) return {.kind = Pass::Kind::paused};
 
+    if (state.interactive && complete && state.since_relit < kQuietSeconds) {
+        const double end = state.render_seconds + kCoarseSeconds;
+        return {.kind = Pass::Kind::brief,
+                .samples = state.samples + 1,
+                .stop_at = state.max_seconds > 0 ? std::min(end, state.max_seconds) : end};
+    }
     int samples = state.samples + pass_samples(state);
     if (state.max_samples > 0) samples = std::min(samples, state.max_samples);
     return {.kind = Pass::Kind::full, .samples = samples, .stop_at = complete ? state.max_seconds : 0};

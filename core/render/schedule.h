@@ -22,6 +22,7 @@ struct ScheduleState {
     double since_publication = 0;
     bool unpublished = false;  ///< The film has samples that no frame shows.
     bool film_shown = false;   ///< A frame has shown the film since the restart.
+    double since_relit = 1e9;  ///< Since an edit of light has scaled the film.
 };
 
 struct Pass {
@@ -29,12 +30,13 @@ struct Pass {
         coarse,  ///< A preview, one sample a pixel; not cut short even by an edit: else a stream of them shows nothing.
         wait,    ///< Nothing for `wait_seconds`, unless an edit comes: the window may draw what there is.
         full,    ///< The film.
+        brief,   ///< The film while edits scale it: for a moment, and not cut short by an edit either.
         paused,  ///< Nothing, until resumed.
         finished,  ///< Nothing: a limit or the target error is reached.
     };
     Kind kind = Kind::full;
     int divisor = 1;  ///< Of the film's width and height.
-    int samples = 0;  ///< Full: that every pixel that is not finished shall have at the end.
+    int samples = 0;  ///< Full, brief: that every pixel that is not finished shall have at the end.
     double wait_seconds = 0;
     double stop_at = 0;  ///< Value of render_seconds that cuts the pass short; 0: never.
 
@@ -42,6 +44,7 @@ struct Pass {
 };
 
 /// What to render next. Pure: the session does as it says.
+/// While edits come that scale the film, passes over it are brief: each edit is shown before the next pass.
 /// After a restart comes a preview, small enough for some 40 edits a second, and once edits have ceased to come the film. The first pass over the film always completes, so that no frame shows holes. Paused, it stops after that.
 Pass next_pass(const ScheduleState& state);
 

@@ -112,6 +112,26 @@ Skip choice_among_lights(const RenderScene& scene) {
                                 : count_of(lamps, "surface") + " of lamps stand in a tree."};
 }
 
+/// Things that give light which an edit changes alone.
+std::size_t sources(const RenderScene& scene) {
+    std::unordered_set<const PackedMaterial*> lamps;
+    const auto objects = static_cast<std::uint32_t>(scene.accelerator().instances().size());
+    for (std::uint32_t i = 0; i < objects; ++i) {
+        if (scene.packed_material(i).emissive) lamps.insert(&scene.packed_material(i));
+    }
+    return lamps.size() + (scene.features().environment ? 1 : 0);
+}
+
+Skip restarts_by_light(const RenderScene& scene) {
+    const std::size_t count = sources(scene);
+    return {.name = "Restarts by edits of light",
+            .state = count == 0 ? SkipState::absent : skipped_if(count == 1),
+            .why = count == 0   ? "There is no light."
+                   : count == 1 ? "All light is one: made brighter, darker or of another colour, it scales the image "
+                                  "that is there, unless samples are clamped."
+                                : count_of(count, "light") + " are mixed in the image: it is scaled only with all."};
+}
+
 Skip paths_from_lamps(const RenderScene& scene) {
     const Features& features = scene.features();
     const bool active = scene.emission() == nullptr;
@@ -368,6 +388,7 @@ std::vector<Skip> skips_of(const RenderScene& scene) {
                             choice_among_lights(scene),
                             lamps_one_by_one(scene),
                             surfaces_one_by_one(scene),
+                            restarts_by_light(scene),
                             paths_from_lamps(scene),
                             bounces(scene),
                             environment(scene),

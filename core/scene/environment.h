@@ -3,11 +3,16 @@
 #include "core/math/field.h"
 #include "core/math/image.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <variant>
 
 namespace rayuela {
+
+// Each kind has
+//     light()    what its light is in proportion to, channel by channel: all of these together;
+//     put_out()  sets them to 0.
 
 /// No light from outside.
 struct NoEnvironment {
@@ -15,6 +20,8 @@ struct NoEnvironment {
 
     template <typename Self, typename Visitor>
     static void visit_fields(Self&, Visitor&&) {}
+    std::array<Color, 0> light() const { return {}; }
+    void put_out() {}
     bool operator==(const NoEnvironment&) const = default;
 };
 
@@ -34,6 +41,8 @@ struct ConstantEnvironment {
                                    .soft_min = 0,
                                    .soft_max = 2});
     }
+    std::array<Color, 1> light() const { return {radiance}; }
+    void put_out() { radiance = Color(0); }
     bool operator==(const ConstantEnvironment&) const = default;
 };
 
@@ -62,6 +71,8 @@ struct GradientEnvironment {
                               .soft_min = 0,
                               .soft_max = 2});
     }
+    std::array<Color, 2> light() const { return {bottom, top}; }
+    void put_out() { bottom = top = Color(0); }
     bool operator==(const GradientEnvironment&) const = default;
 };
 
@@ -91,6 +102,8 @@ struct ImageEnvironment {
                                    .soft_min = -180,
                                    .soft_max = 180});
     }
+    std::array<Color, 1> light() const { return {Color(scale)}; }
+    void put_out() { scale = 0; }
     bool operator==(const ImageEnvironment&) const = default;
 };
 

@@ -1,5 +1,7 @@
 #include "core/scene/scene_diff.h"
 
+#include "core/scene/light_factor.h"
+
 #include <algorithm>
 #include <unordered_map>
 
@@ -71,6 +73,8 @@ SceneChanges diff(const Scene& before, const Scene& after) {
     changes.assignment = changed_assignment(before, after);
     changes.environment = before.environment != after.environment;
     changes.accel = before.render.accel != after.render.accel;
+    const bool same_surfaces = !changes.geometry && !changes.assignment;
+    if (same_surfaces && (changes.materials || changes.environment)) changes.light = light_factor(before, after);
     return changes;
 }
 

@@ -2,6 +2,8 @@
 
 #include "core/scene/scene.h"
 
+#include <optional>
+
 namespace rayuela {
 
 /// What differs between two scenes, by what has to be rebuilt for it. Derived by `diff`, never set by hand.
@@ -15,12 +17,14 @@ struct SceneChanges {
     bool assignment = false;   ///< An object's material; lights as above.
     bool environment = false;  ///< Its distribution.
     bool accel = false;        ///< Trees; the image does not depend on them, so accumulation goes on.
+    /// What `materials` and `environment` mean to the image, where they mean no more: see light_factor.
+    std::optional<Vec3d> light;
 
-    /// Whether what has been accumulated is of no use any more.
+    /// Whether what has been accumulated is of no use any more, not even multiplied by `light`.
     bool restarts() const {
-        return film_size || camera || sampling || materials || geometry || assignment || environment;
+        return film_size || camera || sampling || geometry || assignment || ((materials || environment) && !light);
     }
-    bool any() const { return restarts() || accel; }
+    bool any() const { return restarts() || materials || environment || accel; }
     bool operator==(const SceneChanges&) const = default;
 };
 

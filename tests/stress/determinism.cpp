@@ -66,7 +66,7 @@ Outcome edit_storm(double scale) {
         RenderSession session({.threads = 2, .interactive = round % 2 == 0});
         session.submit(std::make_shared<const Scene>(scene));
         edit_while_rendering(session, scene, kEdits, random);
-        outcome.expect(settle(session) && session.frame()->image.pixels == render_fresh(scene)->image.pixels,
+        outcome.expect(settle(session) && is_fresh(*session.frame(), *render_fresh(scene)),
                        [&] { return fmt::format("round {}", round); });
         outcome.cases += kEdits;
     }

@@ -14,7 +14,7 @@ inline SceneEdit random_edit(const Scene& scene, std::mt19937& random) {
     RenderSettings render = scene.render;
     Object object = pick_one(scene.objects);
     MaterialEntry material = pick_one(scene.materials);
-    switch (random() % 9) {
+    switch (random() % 11) {
         case 0:
             camera.position += Vec3(uniform(-0.2f, 0.2f));
             return SetCamera{camera};
@@ -38,6 +38,13 @@ inline SceneEdit random_edit(const Scene& scene, std::mt19937& random) {
             return SetRenderSettings{render};
         case 7:
             return AddObject{{.shape = Sphere{Vec3(uniform(-2, 2), 0.3f, 2), 0.3f}, .material = material.id}};
+        case 8:
+            return SetEnvironment{NoEnvironment{}};
+        case 9:
+            // By powers of two, so that the choice among lamps stays the same to the last bit.
+            if (auto* lamp = std::get_if<Emitter>(&material.material))
+                lamp->radiance.value *= lamp->radiance.value.x > 8 ? 0.25f : 2.0f;
+            return SetMaterial{material};
         default:
             return SetEnvironment{ConstantEnvironment{Color(uniform(0, 1))}};
     }

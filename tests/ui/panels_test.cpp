@@ -308,6 +308,38 @@ TEST_F(PanelTest, CameraViewsAndFields) {
     EXPECT_EQ(editor().frame()->image.height, 200);
 }
 
+/// While the only light is dragged every frame shows the whole image, and it gets better.
+TEST_F(PanelTest, TheOnlyLightIsDraggedAndSamplesGoOn) {
+    limit(0);
+    editor().edit(SetEnvironment{NoEnvironment{}}, "Night");
+    editor().selection = ball().id;
+    run([&](ImGuiTestContext* script) { choose(script, "//Inspector/object/material/##kind", "Emitter"); });
+    ASSERT_TRUE(draw_until_rendered(4));
+    const std::uint64_t count = restarts(), first = statistics().samples;
+    const Vec4 glow = editor().frame()->image.pixels[45 * 120 + 60];
+    run([&](ImGuiTestContext* script) {
+        const char* const intensity = "//Inspector/object/material/##radiance/##intensity";
+        script->MouseMove(intensity);
+        script->MouseDown();
+        std::uint64_t samples = first;
+        for (int step = 0; step < 20; ++step) {
+            const ImVec2 mouse = ImGui::GetIO().MousePos;
+            script->MouseMoveToPos({mouse.x + 4, mouse.y});
+            script->Yield();
+            const Frame& frame = *editor().frame();
+            IM_CHECK(!frame.coarse && frame.statistics.restarts == count && frame.statistics.samples >= samples);
+            samples = frame.statistics.samples;
+        }
+        script->MouseUp();
+    });
+    const float factor = std::get<Emitter>(red()).radiance.value.x / glow.x;
+    EXPECT_GT(factor, 1.2f);
+    ASSERT_TRUE(draw_until([&] { return *editor().frame()->scene == scene() && statistics().samples > 2 * first; }));
+    EXPECT_EQ(restarts(), count);
+    EXPECT_GT(statistics().relit, 3u);
+    EXPECT_NEAR(editor().frame()->image.pixels[45 * 120 + 60].x / (factor * glow.x), 1, 1e-5);
+}
+
 TEST_F(PanelTest, PauseResumeRestartAndStop) {
     limit(0);
     run([&](ImGuiTestContext* script) {

@@ -67,6 +67,9 @@ void draw_rendering(const RenderStatistics& s, float width) {
     number_row("Paths", grouped_text(s.samples), "Camera paths since the last restart.");
     number_row("Restarts", grouped_text(s.restarts),
                "How often accumulation has begun anew since the program started.");
+    if (s.relit > 0)
+        number_row("Relit", grouped_text(s.relit),
+                   "Edits of light since the last restart that have scaled the image: its samples go on.");
     number_row("Threads", std::to_string(s.threads), "Workers that trace rays.");
     ImGui::EndTable();
 }

@@ -303,6 +303,8 @@ TEST_F(Rebuilds, TheRendererCountsWhatItRestarts) {
     EXPECT_EQ(restarts_after(scene), 2u);
     torus().transform.translate.x += 1;
     EXPECT_EQ(restarts_after(scene), 3u);
+    add_material(scene, Emitter{});
+    EXPECT_EQ(restarts_after(scene), 3u) << "nothing visible has it";
 }
 
 /// A long build that the next edit makes pointless is broken off: its scene is never taken, so nothing restarts for it.

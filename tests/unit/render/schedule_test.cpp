@@ -101,6 +101,27 @@ TEST(Schedule, PausedShowsOneSampleOfAnEditAndRests) {
     EXPECT_TRUE(publish_now(state));
 }
 
+TEST(Schedule, PassesAreBriefWhileEditsScaleTheFilm) {
+    ScheduleState state = state_1280x720();
+    state.samples = 5;
+    state.render_seconds = 3;
+    state.since_relit = 0.02;
+    const Pass pass = next_pass(state);
+    EXPECT_EQ(pass.kind, Pass::Kind::brief);
+    EXPECT_EQ(pass.samples, 6);
+    EXPECT_NEAR(pass.stop_at, 3.012, 0.005);
+    state.max_seconds = 3.001;
+    EXPECT_EQ(next_pass(state).stop_at, 3.001);
+    state.max_seconds = 0;
+    state.since_relit = 0.1;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::full);
+    state.since_relit = 0.02;
+    state.paused = true;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::paused);
+    state.paused = state.interactive = false;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::full);
+}
+
 TEST(Schedule, PublishesAtOnceThenLessOften) {
     ScheduleState state = state_1280x720();
     EXPECT_FALSE(publish_now(state));

@@ -103,6 +103,21 @@ TEST(Skips, NoPathsFromLampsWithoutCaustics) {
     EXPECT_THAT(skipped_in(lit_ball(Diffuse{})), AllOf(Contains("Paths from lamps"), Not(Contains("Shadow rays"))));
 }
 
+TEST(Skips, OneLightIsEditedWithoutARestart) {
+    constexpr std::string_view kName = "Restarts by edits of light";
+    Scene scene = lit_ball(Diffuse{});
+    EXPECT_EQ(skip_of(scene, kName).state, SkipState::skipped);
+    add_object(scene, Sphere{Vec3(3, 4, 1), 0.5f}, scene.objects[2].material);
+    EXPECT_EQ(skip_of(scene, kName).state, SkipState::skipped) << "lamps of one material";
+    scene.environment = ConstantEnvironment{};
+    EXPECT_EQ(skip_of(scene, kName).state, SkipState::needed);
+    EXPECT_THAT(skip_of(scene, kName).why, ::testing::HasSubstr("2 lights"));
+    scene.objects.resize(2);
+    EXPECT_EQ(skip_of(scene, kName).state, SkipState::skipped) << "the sky alone";
+    scene.environment = NoEnvironment{};
+    EXPECT_EQ(skip_of(scene, kName).state, SkipState::absent);
+}
+
 TEST(Skips, TexturesAreCountedWhereTheyAreSeen) {
     EXPECT_THAT(skipped_in(lit_ball(Diffuse{})), Contains("Textures"));
     Scene scene = lit_ball(Diffuse{{Color(1), std::make_shared<Image>(Image{1, 1, {Vec4(1)}, "white"})}});
