@@ -56,24 +56,19 @@ public:
 
     HWY_INLINE void prefetch(const LeafVisit& leaf) const {
         // As many vertices as triangles: what leaves mostly have.
-        const float* const block = mesh_.leaf_data.data() + leaf.first;
-        for (std::size_t i = 0; i < LeafBlock::kHeader + 4 * leaf.count; i += 16) hwy::Prefetch(block + i);
+        const float* const block = mesh_.blocks(leaf.first);
+        for (std::size_t i = 0; i < LeafBlock::kHeader + 5 * leaf.count; i += 16) hwy::Prefetch(block + i);
     }
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         closer_ = 0;
         for (const LeafVisit& visit : visits) {
-            const float* data = mesh_.leaf_data.data() + visit.first;
-            for (std::size_t left = visit.count; left > 0;) {
-                const LeafBlock block(data);
-                const std::uint32_t* const names = mesh_.tree.references.data() + block.first_name();
+            each_block(visit.first, visit.count, [&](const LeafBlock& block) HWY_ATTR {
                 for (std::size_t i = 0; i < block.triangles(); i += kLanes) {
-                    if (triangles_.add(visit.slot, block, i, names)) decide();
+                    if (triangles_.add(visit.slot, block, i)) decide();
                 }
-                data += block.size();
-                left -= block.triangles();
-            }
+            });
         }
         decide();
         for (; closer_ != 0; closer_ &= closer_ - 1) {
@@ -89,9 +84,9 @@ public:
     }
     HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
         LaneBits closer = 0;
-        each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block, const std::uint32_t* names) HWY_ATTR {
+        each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block) HWY_ATTR {
             packet_.test(block, mask_of(lanes), [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
-                keep_closer(hit, object_, names[i], hits_[block_.id[first_ + lane]]);
+                keep_closer(hit, object_, block.name(i), hits_[block_.id[first_ + lane]]);
                 closer |= LaneBits{1} << lane;
             });
         });
@@ -102,13 +97,13 @@ public:
     }
 
 private:
-    /// visit(block, names) for the blocks of `count` triangles that begin at `first`.
+    /// visit(block) for the blocks of a leaf.
     template <typename Visit>
     HWY_INLINE void each_block(std::size_t first, std::size_t count, const Visit& visit) const {
-        while (count > 0) {
-            const LeafBlock block(mesh_.leaf_data.data() + first);
-            visit(block, mesh_.tree.references.data() + block.first_name());
-            first += block.size();
+        for (const float* data = mesh_.blocks(first); count > 0;) {
+            const LeafBlock block(data);
+            visit(block);
+            data += block.size();
             count -= block.triangles();
         }
     }

@@ -77,12 +77,12 @@ public:
         const FloatMask hit = may_hit(filter_[slot], runs + i, n);
         return add(slot, hit, n - i, {runs + i, n}, nullptr, first_name + static_cast<std::uint32_t>(i));
     }
-    /// Triangles i to i + kLanes of a block. Triangle k is called names[k].
-    HWY_INLINE bool add(std::size_t slot, const LeafBlock& block, std::size_t i, const std::uint32_t* names) {
+    /// Triangles i to i + kLanes of a block.
+    HWY_INLINE bool add(std::size_t slot, const LeafBlock& block, std::size_t i) {
         const CornerView view = CornerView::of(block);
         const FloatMask hit = view.corners ? may_hit(filter_[slot].in_all_lanes(), filter_[slot].turn(), block, i)
                                            : may_hit(filter_[slot], block.values() + i, block.triangles());
-        return add(slot, hit, block.triangles() - i, view.from(i), names + i, 0);
+        return add(slot, hit, block.triangles() - i, view.from(i), block.names() + i, 0);
     }
 
     /// Calls accept(slot, name, ShapeHit) for each triangle added that the slot's ray hits at t within [t_min, t_max].
@@ -99,8 +99,8 @@ public:
                     candidates_.vertex[3 * corner + 2][to] = found.view.coordinate(k, corner, ray.z);
                 }
                 candidates_.set_ray(to, block_, ray_of_slot_[found.slot]);
-                const std::uint32_t name =
-                    found.names ? found.names[k] : found.first_name + static_cast<std::uint32_t>(k);
+                const std::uint32_t name = found.names ? std::bit_cast<std::uint32_t>(found.names[k])
+                                                       : found.first_name + static_cast<std::uint32_t>(k);
                 candidates_.slot[to] = found.slot;
                 candidates_.name[to] = name;
                 // A large triangle lies in many leaves of a ray.
@@ -119,7 +119,7 @@ private:
     /// What the filter leaves of up to kLanes triangles.
     struct Found {
         CornerView view;
-        const std::uint32_t* names;  ///< Null where triangles are called first_name + k.
+        const float* names;  ///< As LeafBlock has them; null where triangles are called first_name + k.
         std::uint32_t first_name, slot;
         LaneBits candidates;
     };
@@ -141,8 +141,8 @@ private:
     };
 
     /// What the filter leaves of the next n triangles.
-    HWY_INLINE bool add(std::size_t slot, FloatMask hit, std::size_t n, const CornerView& view,
-                        const std::uint32_t* names, std::uint32_t first_name) {
+    HWY_INLINE bool add(std::size_t slot, FloatMask hit, std::size_t n, const CornerView& view, const float* names,
+                        std::uint32_t first_name) {
         const FloatTag d;
         const LaneBits candidates = bits_of(d, hn::And(hit, hn::FirstN(d, n)));
         found_[size_] = {view, names, first_name, static_cast<std::uint32_t>(slot), candidates};
