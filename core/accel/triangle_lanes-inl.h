@@ -98,7 +98,8 @@ public:
                     candidates_.vertex[3 * corner + 1][to] = found.view.coordinate(k, corner, ray.y);
                     candidates_.vertex[3 * corner + 2][to] = found.view.coordinate(k, corner, ray.z);
                 }
-                candidates_.set_ray(to, block_, ray_of_slot_[found.slot]);
+                const std::size_t i = ray_of_slot_[found.slot];
+                candidates_.set_ray(to, block_, i, rays_[block_.id[i]]);
                 const std::uint32_t name = found.names ? std::bit_cast<std::uint32_t>(found.names[k])
                                                        : found.first_name + static_cast<std::uint32_t>(k);
                 candidates_.slot[to] = found.slot;
@@ -129,14 +130,17 @@ private:
         static constexpr std::size_t kCapacity = 64;
         alignas(64) float vertex[9][kCapacity];
         alignas(64) double ray[6][kCapacity];  ///< As ExactRays has it.
+        alignas(64) float t_min[kCapacity], t_max[kCapacity];
         std::uint32_t slot[kCapacity], name[kCapacity];
         std::size_t size = 0;
 
-        HWY_INLINE void set_ray(std::size_t to, const RayBlock& block, std::size_t i) {
+        HWY_INLINE void set_ray(std::size_t to, const RayBlock& block, std::size_t i, const Ray& limits) {
             for (std::size_t axis = 0; axis < 3; ++axis) ray[axis][to] = block.turned_origin[axis][i];
             ray[3][to] = block.shear_x[i];
             ray[4][to] = block.shear_y[i];
             ray[5][to] = block.inverse_z[i];
+            t_min[to] = limits.t_min;
+            t_max[to] = limits.t_max;
         }
     };
 
@@ -174,18 +178,19 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
         const ExactHits hits = intersect(ExactRays{ray(0), ray(1), ray(2), ray(3), ray(4), ray(5)},
                                          ExactTriangles{vertex(0), vertex(1), vertex(2), vertex(3), vertex(4),
                                                         vertex(5), vertex(6), vertex(7), vertex(8)});
+        // Many lie behind their rays: those that the rays leave from. An infinite t may be rounded to a finite one.
+        const auto rounded = hn::DemoteTo(df, hits.t);
+        const auto in_range = hn::And(hn::Ge(rounded, hn::Load(df, candidates_.t_min + i)),
+                                      hn::Le(rounded, hn::Load(df, candidates_.t_max + i)));
         const auto hit = hn::And(hits.hit, hn::FirstN(dd, candidates_.size - i));
         alignas(64) double t[kDoubles], us[kDoubles], vs[kDoubles];
         hn::Store(hits.t, dd, t);
         hn::Store(hits.u, dd, us);
         hn::Store(hits.v, dd, vs);
-        for (LaneBits bits = bits_of(dd, hit); bits != 0; bits &= bits - 1) {
+        for (LaneBits bits = bits_of(dd, hit) & bits_of(df, in_range); bits != 0; bits &= bits - 1) {
             const std::size_t k = first_lane(bits);
-            const std::uint32_t slot = candidates_.slot[i + k];
-            const Ray& limits = rays_[block_.id[ray_of_slot_[slot]]];
             const ShapeHit found = triangle_hit(t[k], us[k], vs[k]);
-            if (!TRange{limits.t_min, limits.t_max}.contains(found.t)) continue;
-            accept(slot, candidates_.name[i + k], found);
+            if (std::fabs(found.t) < kInfinity) accept(candidates_.slot[i + k], candidates_.name[i + k], found);
         }
     }
     candidates_.size = 0;
