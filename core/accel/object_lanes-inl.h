@@ -55,9 +55,11 @@ public:
     }
 
     HWY_INLINE void prefetch(const LeafVisit& leaf) const {
-        // As many vertices as triangles: what leaves mostly have.
+        // As many vertices as triangles: what leaves mostly have. Four lines without a count to guess wrong.
+        constexpr std::size_t kLine = 16, kOften = 4 * kLine;
         const float* const block = mesh_.blocks(leaf.first);
-        for (std::size_t i = 0; i < LeafBlock::kHeader + 5 * leaf.count; i += 16) hwy::Prefetch(block + i);
+        for (std::size_t i = 0; i < kOften; i += kLine) hwy::Prefetch(block + i);
+        for (std::size_t i = kOften; i < LeafBlock::kHeader + 5 * leaf.count; i += kLine) hwy::Prefetch(block + i);
     }
 
     template <typename Slots>
