@@ -2,6 +2,7 @@
 
 #include "core/accel/kd_merge.h"
 #include "core/accel/large_objects.h"
+#include "core/accel/large_pages.h"
 #include "core/accel/parallel.h"
 #include "core/accel/triangle_runs.h"
 
@@ -57,6 +58,7 @@ UnsetVector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
         size += part.data.size();
     }
     UnsetVector<float> data(size + kRunPadding);
+    prefer_large_pages(data.data(), data.size() * sizeof(float));
     std::fill_n(data.end() - kRunPadding, kRunPadding, 0.0f);
     parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
