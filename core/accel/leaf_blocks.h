@@ -73,9 +73,12 @@ struct CornerView {
     CornerView from(std::size_t first) const {
         return corners ? CornerView{values, stride, corners + first} : CornerView{values + first, stride};
     }
-    float coordinate(std::size_t triangle, std::size_t corner, std::size_t axis) const {
-        return corners ? values[axis * stride + LeafBlock::corner(corners[triangle], corner)]
-                       : values[(3 * corner + axis) * stride + triangle];
+    /// The x of a corner; y and z follow, each `stride` on.
+    const float* corner(std::size_t triangle, std::size_t i) const {
+        return values + (corners ? LeafBlock::corner(corners[triangle], i) : 3 * i * stride + triangle);
+    }
+    float coordinate(std::size_t triangle, std::size_t i, std::size_t axis) const {
+        return corner(triangle, i)[axis * stride];
     }
 };
 

@@ -93,10 +93,11 @@ public:
             TriangleFilter& ray = filter_[found.slot];
             for (LaneBits bits = found.candidates; bits != 0; bits &= bits - 1) {
                 const std::size_t k = first_lane(bits), to = candidates_.size;
-                for (std::size_t corner = 0; corner < 3; ++corner) {
-                    candidates_.vertex[3 * corner][to] = found.view.coordinate(k, corner, ray.x);
-                    candidates_.vertex[3 * corner + 1][to] = found.view.coordinate(k, corner, ray.y);
-                    candidates_.vertex[3 * corner + 2][to] = found.view.coordinate(k, corner, ray.z);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const float* const corner = found.view.corner(k, i);
+                    candidates_.vertex[3 * i][to] = corner[ray.x * found.view.stride];
+                    candidates_.vertex[3 * i + 1][to] = corner[ray.y * found.view.stride];
+                    candidates_.vertex[3 * i + 2][to] = corner[ray.z * found.view.stride];
                 }
                 const std::size_t i = ray_of_slot_[found.slot];
                 candidates_.set_ray(to, block_, i, rays_[block_.id[i]]);
