@@ -86,6 +86,7 @@ public:
     }
     HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
         LaneBits closer = 0;
+        prefetch({.slot = 0, .first = leaf.first(), .count = leaf.count()});
         each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block) HWY_ATTR {
             packet_.test(block, mask_of(lanes), [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
                 keep_closer(hit, object_, block.name(i), hits_[block_.id[first_ + lane]]);
