@@ -1,5 +1,6 @@
 #include "core/accel/kd_branch.h"
 
+#include "core/accel/large_pages.h"
 #include "core/accel/parallel.h"
 
 #include <algorithm>
@@ -55,6 +56,8 @@ KdTree assemble(const KdBranch& root, const Bounds3& bounds, std::uint64_t primi
     KdTree whole;
     whole.bounds = bounds;
     whole.primitives = primitives;
+    whole.nodes.reserve(layout.nodes + 1);  // One more for a leaf of what stands apart.
+    prefer_large_pages(whole.nodes.data(), whole.nodes.capacity() * sizeof(KdNode));
     fork_join([&] { whole.nodes.resize(layout.nodes); }, [&] { whole.references.resize(layout.references); });
     parallel_ranges(layout.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) layout.pieces[i].copy_to(whole);

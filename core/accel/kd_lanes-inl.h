@@ -8,6 +8,7 @@
 
 #include "core/accel/kd_tree.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <span>
@@ -110,6 +111,11 @@ public:
         return hn::CountTrue(dw, is_inner);
     }
 
+    /// Fetches the nodes of the next step.
+    HWY_INLINE void prefetch(const KdNode* nodes) const {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) hwy::Prefetch(nodes + node_[lane]);
+    }
+
     /// The lanes that stood at a leaf when the last step was taken, and those of them whose leaf holds something.
     struct AtLeaf {
         LaneBits any, filled;
@@ -176,9 +182,16 @@ struct LaneGroups {
     LaneGroup group[kGroups];
 
     /// Number of lanes that moved.
-    HWY_INLINE std::size_t step(const KdNode* nodes) {
+    HWY_INLINE std::size_t step(const KdTree& tree) {
+        // With fewer, fetching takes longer than it saves.
+        constexpr std::size_t kManyNodes = std::size_t{1} << 20;
+        const KdNode* const nodes = tree.nodes.data();
+        const bool many = tree.nodes.size() > kManyNodes;
         std::size_t moved = 0;
-        for (LaneGroup& one : group) moved += one.step(nodes);
+        for (LaneGroup& one : group) {
+            moved += one.step(nodes);
+            if (many) one.prefetch(nodes);
+        }
         return moved;
     }
     LaneGroup& of(std::size_t slot) { return group[slot / kLanes]; }
@@ -193,7 +206,6 @@ struct LaneGroups {
 template <typename Client>
 HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& client) {
     LaneGroups groups;
-    const KdNode* const nodes = tree.nodes.data();
     std::size_t next = 0;
     const auto refill = [&](std::size_t g) HWY_ATTR {
         constexpr LaneBits kAll = static_cast<LaneBits>((std::uint64_t{1} << kLanes) - 1);
@@ -213,7 +225,7 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
         }
         if (active == 0) return;
         const std::size_t few = static_cast<std::size_t>(active) / 4;
-        while (groups.step(nodes) > few) {
+        while (groups.step(tree) > few) {
         }
 
         LeafVisit visits[kSlots];

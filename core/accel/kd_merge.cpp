@@ -19,7 +19,7 @@ struct LeafLimit {
 /// What is copied.
 struct Source {
     const KdTree& tree;
-    const LeafReferences& references_of;
+    const LeafReferences& append_references;
 };
 
 /// Copies a subtree from its leaves up: leaves are made one as soon as both stand at the end of the copy.
@@ -32,8 +32,7 @@ public:
         const KdNode& node = from.tree.nodes[index];
         if (node.is_leaf()) {
             const auto first = static_cast<std::uint32_t>(to_.references.size());
-            const auto references = from.references_of(node);
-            to_.references.insert(to_.references.end(), references.begin(), references.end());
+            from.append_references(node, to_.references);
             std::sort(to_.references.begin() + first, to_.references.end());
             to_.nodes[slot] = KdNode::leaf(first, node.count());
             return;
@@ -120,19 +119,20 @@ private:
 
 }  // namespace
 
-std::optional<KdTree> merge_leaves(const KdTree& tree, const LeafReferences& references_of, KdSplit split,
+std::optional<KdTree> merge_leaves(const KdTree& tree, const LeafReferences& append_references, KdSplit split,
                                    int leaf_size, BuildControl& control) {
     const LeafLimit limit{split, static_cast<std::size_t>(leaf_size)};
-    const KdBranch merged = LeafMerger({tree, references_of}, limit, control).branch(0, 0, tree.primitives);
+    const KdBranch merged = LeafMerger({tree, append_references}, limit, control).branch(0, 0, tree.primitives);
     if (control.cancelled) return {};
     return assemble(merged, tree.bounds, tree.primitives);
 }
 
 std::optional<KdTree> merge_leaves(const KdTree& tree, KdSplit split, int leaf_size, BuildControl& control) {
-    const auto references_of = [&](const KdNode& leaf) {
-        return std::span(tree.references).subspan(leaf.first(), leaf.count());
+    const auto append_references = [&](const KdNode& leaf, std::vector<std::uint32_t>& to) {
+        const auto begin = tree.references.begin() + leaf.first();
+        to.insert(to.end(), begin, begin + leaf.count());
     };
-    return merge_leaves(tree, references_of, split, leaf_size, control);
+    return merge_leaves(tree, append_references, split, leaf_size, control);
 }
 
 }  // namespace rayuela

@@ -21,12 +21,6 @@ struct WordPairs {
 
 #if HWY_TARGET == HWY_SCALAR
 
-template <typename Tag>
-HWY_INLINE hn::Vec<Tag> load_each(Tag d, const hn::TFromD<Tag>* base, const std::uint32_t* index,
-                                  std::size_t stride = 1) {
-    return hn::Load(d, base + stride * *index);
-}
-
 HWY_INLINE WordPairs gather_pairs(const std::uint64_t* base, const std::uint32_t* index) {
     const WordTag dw;
     const std::uint64_t pair = base[*index];
@@ -39,16 +33,14 @@ HWY_INLINE void scatter_pairs(const WordPairs& pairs, std::uint64_t* base, const
 
 #else
 
-/// base[stride * index[k]] in lane k. A load and an insertion a lane: instructions that gather take twice as long on Zen 4.
+/// base[index[k]] in lane k. A load and an insertion a lane: instructions that gather take twice as long on Zen 4.
 template <typename Tag>
-HWY_INLINE hn::Vec<Tag> load_each(Tag d, const hn::TFromD<Tag>* base, const std::uint32_t* index,
-                                  std::size_t stride = 1) {
+HWY_INLINE hn::Vec<Tag> load_each(Tag d, const std::uint64_t* base, const std::uint32_t* index) {
     if constexpr (hn::MaxLanes(Tag()) == 1) {
-        return hn::Load(d, base + stride * *index);
+        return hn::Load(d, base + *index);
     } else {
         const hn::Half<Tag> half;
-        return hn::Combine(d, load_each(half, base, index + hn::MaxLanes(half), stride),
-                           load_each(half, base, index, stride));
+        return hn::Combine(d, load_each(half, base, index + hn::MaxLanes(half)), load_each(half, base, index));
     }
 }
 

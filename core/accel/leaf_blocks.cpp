@@ -5,6 +5,19 @@
 namespace rayuela {
 namespace {
 
+/// Room for another block: its header, `values` floats, then its names.
+float* append_block(std::uint32_t header, std::size_t values, std::span<const std::uint32_t> names,
+                    UnsetVector<float>& data) {
+    const std::size_t at = data.size(), end = at + LeafBlock::kHeader + values + names.size();
+    data.resize(LeafBlock::whole_units(end));
+    float* const out = data.data();
+    out[at] = std::bit_cast<float>(header);
+    std::ranges::transform(names, out + end - names.size(),
+                           [](std::uint32_t name) { return std::bit_cast<float>(name); });
+    std::fill(out + end, out + data.size(), 0.0f);
+    return out + at + LeafBlock::kHeader;
+}
+
 /// Triangles over shared vertices.
 class SharedBlock {
 public:
@@ -28,13 +41,10 @@ public:
     }
     std::uint32_t triangles() const { return triangles_; }
 
-    void append(std::uint32_t first_name, UnsetVector<float>& data) const {
-        const std::size_t at = data.size(), n = vertices_;
-        data.resize(at + LeafBlock::kHeader + 3 * n + triangles_);
-        float* const out = data.data() + at;
-        out[0] = std::bit_cast<float>(triangles_ | vertices_ << 8);
-        out[1] = std::bit_cast<float>(first_name);
-        float* const values = out + LeafBlock::kHeader;
+    /// `names` are the triangles that were added.
+    void append(std::span<const std::uint32_t> names, UnsetVector<float>& data) const {
+        const std::size_t n = vertices_;
+        float* const values = append_block(triangles_ | vertices_ << 8, 3 * n + triangles_, names, data);
         for (std::size_t i = 0; i < n; ++i) {
             for (std::size_t axis = 0; axis < 3; ++axis)
                 values[axis * n + i] = mesh_.positions[vertex_[i]][static_cast<int>(axis)];
@@ -65,22 +75,18 @@ private:
     std::array<std::uint32_t, LeafBlock::kMaxTriangles> words_;  ///< As in the block, without extents.
 };
 
-void append_runs(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
-                 UnsetVector<float>& data) {
-    const std::size_t n = triangles.size(), at = data.size() + LeafBlock::kHeader;
-    data.resize(at + kTriangleRuns * n);
-    data[at - 2] = std::bit_cast<float>(static_cast<std::uint32_t>(n));
-    data[at - 1] = std::bit_cast<float>(first_name);
+void append_runs(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, UnsetVector<float>& data) {
+    const std::size_t n = triangles.size();
+    float* const runs = append_block(static_cast<std::uint32_t>(n), kTriangleRuns * n, triangles, data);
     for (std::size_t i = 0; i < n; ++i) {
         const glm::uvec3& t = mesh.triangles[triangles[i]];
-        write_triangle({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, i, n, data.data() + at);
+        write_triangle({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, i, n, runs);
     }
 }
 
 }  // namespace
 
-void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
-                        UnsetVector<float>& data) {
+void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, UnsetVector<float>& data) {
     // A block that is less full than this costs more tests than it saves memory.
     constexpr std::size_t kFull = 12;
     while (!triangles.empty()) {
@@ -89,13 +95,12 @@ void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t>
         }
         std::size_t n = block.triangles();
         if (n == triangles.size() || n >= kFull) {
-            block.append(first_name, data);
+            block.append(triangles.first(n), data);
         } else {
             n = std::min<std::size_t>(triangles.size(), LeafBlock::kMaxTriangles);
-            append_runs(mesh, triangles.first(n), first_name, data);
+            append_runs(mesh, triangles.first(n), data);
         }
         triangles = triangles.subspan(n);
-        first_name += static_cast<std::uint32_t>(n);
     }
 }
 

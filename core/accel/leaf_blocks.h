@@ -14,26 +14,30 @@ namespace rayuela {
 /// vertex stands once; where triangles share too few vertices, a block holds runs (triangle_runs.h) instead. In floats; words
 /// are stored by their bits:
 ///     a word: number of triangles (8 bits), number of vertices or 0 for runs (8 bits)
-///     a word: where the triangles' names begin in KdTree::references
 ///     x of the vertices, y, z; then a word a triangle: the numbers of its corners (8 bits each), its extent (8 bits)
 ///     or: the runs
+///     a word a triangle: its name
+///     zeros, up to whole units
 class LeafBlock {
 public:
     static constexpr std::uint32_t kMaxTriangles = 16, kMaxVertices = 16;
-    static constexpr std::size_t kHeader = 2;
+    static constexpr std::size_t kHeader = 1;
+    /// Blocks begin at multiples of this many floats, so that 32 bits address as many times more.
+    static constexpr std::size_t kUnit = 4;
+    static constexpr std::size_t whole_units(std::size_t floats) { return (floats + kUnit - 1) / kUnit * kUnit; }
 
     explicit LeafBlock(const float* data) : data_(data) {}
 
     std::uint32_t triangles() const { return word(0) & 0xff; }
     /// 0 for runs.
     std::uint32_t vertices() const { return word(0) >> 8; }
-    std::uint32_t first_name() const { return word(1); }
     const float* values() const { return data_ + kHeader; }
     const float* corners() const { return values() + 3 * vertices(); }
+    const float* names() const { return data_ + first_name(); }
+    /// The number in the mesh of the i-th triangle.
+    std::uint32_t name(std::size_t i) const { return word(first_name() + i); }
     /// In floats.
-    std::size_t size() const {
-        return kHeader + (vertices() > 0 ? 3 * vertices() + triangles() : kTriangleRuns * triangles());
-    }
+    std::size_t size() const { return whole_units(first_name() + triangles()); }
 
     /// Of a triangle's word: the number of its i-th corner.
     static std::uint32_t corner(float word, std::size_t i) {
@@ -47,6 +51,9 @@ public:
     }
 
 private:
+    std::size_t first_name() const {
+        return kHeader + (vertices() > 0 ? 3 * vertices() + triangles() : kTriangleRuns * triangles());
+    }
     std::uint32_t word(std::size_t i) const { return std::bit_cast<std::uint32_t>(data_[i]); }
 
     const float* data_;
@@ -66,14 +73,16 @@ struct CornerView {
     CornerView from(std::size_t first) const {
         return corners ? CornerView{values, stride, corners + first} : CornerView{values + first, stride};
     }
-    float coordinate(std::size_t triangle, std::size_t corner, std::size_t axis) const {
-        return corners ? values[axis * stride + LeafBlock::corner(corners[triangle], corner)]
-                       : values[(3 * corner + axis) * stride + triangle];
+    /// The x of a corner; y and z follow, each `stride` on.
+    const float* corner(std::size_t triangle, std::size_t i) const {
+        return values + (corners ? LeafBlock::corner(corners[triangle], i) : 3 * i * stride + triangle);
+    }
+    float coordinate(std::size_t triangle, std::size_t i, std::size_t axis) const {
+        return corner(triangle, i)[axis * stride];
     }
 };
 
-/// Appends the blocks of a leaf with these triangles, whose names begin at `first_name`.
-void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, std::uint32_t first_name,
-                        UnsetVector<float>& data);
+/// Appends the blocks of a leaf with these triangles.
+void append_leaf_blocks(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, UnsetVector<float>& data);
 
 }  // namespace rayuela

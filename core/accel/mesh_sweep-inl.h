@@ -31,10 +31,10 @@ HWY_INLINE void sweep_triangles(const MeshTree& mesh, std::uint32_t object, cons
             packet.start(first, lanes, hits);
             for (std::size_t at = begin; at < end; at += LeafBlock(data + at).size()) {
                 const LeafBlock triangles(data + at);
-                const std::uint32_t* const names = mesh.tree.references.data() + triangles.first_name();
                 packet.test(triangles, mask_of(lanes),
-                            [&](std::size_t lane, std::size_t i, const ShapeHit& hit)
-                                HWY_ATTR { keep_closer(hit, object, names[i], hits[block.id[first + lane]]); });
+                            [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
+                                keep_closer(hit, object, triangles.name(i), hits[block.id[first + lane]]);
+                            });
             }
         }
     }

@@ -2,10 +2,12 @@
 
 #include "core/accel/kd_merge.h"
 #include "core/accel/large_objects.h"
+#include "core/accel/large_pages.h"
 #include "core/accel/parallel.h"
 #include "core/accel/triangle_runs.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace rayuela {
 namespace {
@@ -42,11 +44,11 @@ UnsetVector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
         for (std::size_t i = begin; i < end && !control.cancelled; ++i) {
             std::size_t triangles = 0;
             each_leaf(i, [&](const KdNode& leaf) { triangles += leaf.count(); });
-            parts[i].data.reserve(5 * triangles);
+            parts[i].data.reserve(6 * triangles);
             each_leaf(i, [&](KdNode& leaf) {
                 const std::uint32_t first = leaf.first();
-                leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].data.size()), leaf.count());
-                append_leaf_blocks(mesh, std::span(tree.references).subspan(first, leaf.count()), first, parts[i].data);
+                leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].data.size() / LeafBlock::kUnit), leaf.count());
+                append_leaf_blocks(mesh, std::span(tree.references).subspan(first, leaf.count()), parts[i].data);
             });
         }
     });
@@ -56,12 +58,14 @@ UnsetVector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
         size += part.data.size();
     }
     UnsetVector<float> data(size + kRunPadding);
+    prefer_large_pages(data.data(), data.size() * sizeof(float));
     std::fill_n(data.end() - kRunPadding, kRunPadding, 0.0f);
     parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             std::ranges::copy(parts[i].data, data.begin() + static_cast<std::ptrdiff_t>(parts[i].begin));
+            const std::size_t first = parts[i].begin / LeafBlock::kUnit;
             each_leaf(i, [&](KdNode& leaf) {
-                leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].begin + leaf.first()), leaf.count());
+                leaf = KdNode::leaf(static_cast<std::uint32_t>(first + leaf.first()), leaf.count());
             });
         }
     });
@@ -104,7 +108,8 @@ std::optional<KdTree> merged_tree(const TriangleMesh& mesh, const MeshTree& know
                                   BuildControl& control) {
     control.done.fetch_add(mesh.triangles.size() - known.tree.primitives, std::memory_order_relaxed);
     auto tree = merge_leaves(
-        known.tree, [&](const KdNode& leaf) { return known.references(leaf); }, known.split, leaf_size, control);
+        known.tree, [&](const KdNode& leaf, std::vector<std::uint32_t>& to) { known.append_references(leaf, to); },
+        known.split, leaf_size, control);
     if (tree && known.tree.apart != 0) add_apart(*tree, known.references(known.tree.nodes[known.tree.apart]));
     return tree;
 }
@@ -124,7 +129,9 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
     }
     result->leaf_data = place_leaves(*mesh, result->tree, control);
     if (control.cancelled) return nullptr;
+    const std::size_t references = std::exchange(result->tree.references, {}).size();
     result->stats = result->tree.stats();
+    result->stats.references = references;
     result->stats.primitives = mesh->triangles.size();
     result->stats.memory_bytes += result->leaf_data.size() * sizeof(float);
     result->mesh = mesh;
@@ -134,6 +141,22 @@ std::shared_ptr<const MeshTree> finish(const std::shared_ptr<const TriangleMesh>
 }
 
 }  // namespace
+
+void MeshTree::append_references(const KdNode& leaf, std::vector<std::uint32_t>& to) const {
+    const float* data = blocks(leaf.first());
+    for (std::uint32_t left = leaf.count(); left > 0;) {
+        const LeafBlock block(data);
+        for (std::uint32_t i = 0; i < block.triangles(); ++i) to.push_back(block.name(i));
+        data += block.size();
+        left -= block.triangles();
+    }
+}
+
+std::vector<std::uint32_t> MeshTree::references(const KdNode& leaf) const {
+    std::vector<std::uint32_t> result;
+    append_references(leaf, result);
+    return result;
+}
 
 std::shared_ptr<const MeshTree> make_mesh_leaf(const std::shared_ptr<const TriangleMesh>& mesh) {
     const BuildControl control;

@@ -12,19 +12,20 @@ namespace rayuela {
 /// SIMD wants them. Immutable. Does not keep the mesh.
 struct MeshTree {
     std::weak_ptr<const TriangleMesh> mesh;
-    KdTree tree;                   ///< KdNode::first of a leaf: where its blocks begin.
+    /// Its references are empty: what a leaf holds stands in its blocks. KdNode::first of a leaf: the unit of leaf_data at
+    /// which they begin.
+    KdTree tree;
     UnsetVector<float> leaf_data;  ///< Blocks (leaf_blocks.h), and kRunPadding floats that kernels may read too far.
     Bounds3 bounds;                ///< Of all triangles that a ray can meet.
     AccelStats stats;
     KdSplit split = KdSplit::sah;
     int leaf_size = kMaxLeafSize;
 
-    LeafBlock first_block(const KdNode& leaf) const { return LeafBlock(leaf_data.data() + leaf.first()); }
+    /// Where the blocks begin of a leaf with this KdNode::first.
+    const float* blocks(std::size_t first) const { return leaf_data.data() + LeafBlock::kUnit * first; }
     /// The triangles of a leaf.
-    std::span<const std::uint32_t> references(const KdNode& leaf) const {
-        if (leaf.count() == 0) return {};
-        return std::span(tree.references).subspan(first_block(leaf).first_name(), leaf.count());
-    }
+    void append_references(const KdNode& leaf, std::vector<std::uint32_t>& to) const;
+    std::vector<std::uint32_t> references(const KdNode& leaf) const;
 };
 
 /// All triangles in one leaf, for those who test them in turn.

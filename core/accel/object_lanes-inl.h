@@ -55,25 +55,22 @@ public:
     }
 
     HWY_INLINE void prefetch(const LeafVisit& leaf) const {
-        // As many vertices as triangles: what leaves mostly have.
-        const float* const block = mesh_.leaf_data.data() + leaf.first;
-        for (std::size_t i = 0; i < LeafBlock::kHeader + 4 * leaf.count; i += 16) hwy::Prefetch(block + i);
+        // As many vertices as triangles: what leaves mostly have. Four lines without a count to guess wrong.
+        constexpr std::size_t kLine = 16, kOften = 4 * kLine;
+        const float* const block = mesh_.blocks(leaf.first);
+        for (std::size_t i = 0; i < kOften; i += kLine) hwy::Prefetch(block + i);
+        for (std::size_t i = kOften; i < LeafBlock::kHeader + 5 * leaf.count; i += kLine) hwy::Prefetch(block + i);
     }
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         closer_ = 0;
         for (const LeafVisit& visit : visits) {
-            const float* data = mesh_.leaf_data.data() + visit.first;
-            for (std::size_t left = visit.count; left > 0;) {
-                const LeafBlock block(data);
-                const std::uint32_t* const names = mesh_.tree.references.data() + block.first_name();
+            each_block(visit.first, visit.count, [&](const LeafBlock& block) HWY_ATTR {
                 for (std::size_t i = 0; i < block.triangles(); i += kLanes) {
-                    if (triangles_.add(visit.slot, block, i, names)) decide();
+                    if (triangles_.add(visit.slot, block, i)) decide();
                 }
-                data += block.size();
-                left -= block.triangles();
-            }
+            });
         }
         decide();
         for (; closer_ != 0; closer_ &= closer_ - 1) {
@@ -89,9 +86,10 @@ public:
     }
     HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
         LaneBits closer = 0;
-        each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block, const std::uint32_t* names) HWY_ATTR {
+        prefetch({.slot = 0, .first = leaf.first(), .count = leaf.count()});
+        each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block) HWY_ATTR {
             packet_.test(block, mask_of(lanes), [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
-                keep_closer(hit, object_, names[i], hits_[block_.id[first_ + lane]]);
+                keep_closer(hit, object_, block.name(i), hits_[block_.id[first_ + lane]]);
                 closer |= LaneBits{1} << lane;
             });
         });
@@ -102,13 +100,13 @@ public:
     }
 
 private:
-    /// visit(block, names) for the blocks of `count` triangles that begin at `first`.
+    /// visit(block) for the blocks of a leaf.
     template <typename Visit>
     HWY_INLINE void each_block(std::size_t first, std::size_t count, const Visit& visit) const {
-        while (count > 0) {
-            const LeafBlock block(mesh_.leaf_data.data() + first);
-            visit(block, mesh_.tree.references.data() + block.first_name());
-            first += block.size();
+        for (const float* data = mesh_.blocks(first); count > 0;) {
+            const LeafBlock block(data);
+            visit(block);
+            data += block.size();
             count -= block.triangles();
         }
     }

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "core/accel/lane_types-inl.h"
+#include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -88,12 +89,12 @@ class RayBlockWriter {
 public:
     RayBlockWriter(std::span<const Ray> rays, std::span<const Hit> hits, const TracedObject* object,
                    const Bounds3& bounds, const Bounds3& all)
-        : rays_(&rays.data()->origin.x),
-          hits_(&hits.data()->t),
+        : rays_(rays.data()),
+          hits_(hits.data()),
           to_local_(object && !object->in_world ? &object->to_local : nullptr),
           own_space_(object != nullptr),
           bounds_(bounds),
-          reach_(max_component(glm::max(glm::abs(all.lo), glm::abs(all.hi)))) {}
+          reach_(rayuela::max_component(glm::max(glm::abs(all.lo), glm::abs(all.hi)))) {}
 
     HWY_INLINE void write(std::span<const std::uint32_t> ids, RayBlock& block) const {
         block.size = ids.size();
@@ -115,10 +116,16 @@ private:
         const DoubleTag dd;
         const HalfFloatTag df;
         const std::uint32_t* const id = block.id + i;
-        const auto field = [&](int offset) HWY_ATTR { return load_each(df, rays_ + offset, id, 8); };
-        const HalfFloats px = field(0), py = field(1), pz = field(2), t_min = field(3);
-        const HalfFloats vx = field(4), vy = field(5), vz = field(6), t_max = field(7);
-        const HalfFloats best = load_each(df, hits_, id, 6);
+        HalfFloats from[4], along[4], hit[4];
+        load_turned(
+            df, [&](std::size_t lane) HWY_ATTR { return &rays_[id[lane]].origin.x; }, from);
+        load_turned(
+            df, [&](std::size_t lane) HWY_ATTR { return &rays_[id[lane]].direction.x; }, along);
+        load_turned(
+            df, [&](std::size_t lane) HWY_ATTR { return &hits_[id[lane]].t; }, hit);
+        const auto& [px, py, pz, t_min] = from;
+        const auto& [vx, vy, vz, t_max] = along;
+        const HalfFloats best = hit[0];
         auto usable = can_hit(px, py, pz, vx, vy, vz, t_min, t_max);
 
         DoubleVec3 o{hn::PromoteTo(dd, px), hn::PromoteTo(dd, py), hn::PromoteTo(dd, pz)};
@@ -270,8 +277,8 @@ private:
         hn::StoreU(to_local_ ? hn::LoadU(df, block.pad + i) : least, df, block.depth_pad + i);
     }
 
-    const float* rays_;
-    const float* hits_;
+    const Ray* rays_;
+    const Hit* hits_;
     const AffineD* to_local_;
     bool own_space_;  ///< Not the world, whose objects may take the ray further, to spaces of theirs.
     Bounds3 bounds_;

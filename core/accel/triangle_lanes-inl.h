@@ -77,12 +77,12 @@ public:
         const FloatMask hit = may_hit(filter_[slot], runs + i, n);
         return add(slot, hit, n - i, {runs + i, n}, nullptr, first_name + static_cast<std::uint32_t>(i));
     }
-    /// Triangles i to i + kLanes of a block. Triangle k is called names[k].
-    HWY_INLINE bool add(std::size_t slot, const LeafBlock& block, std::size_t i, const std::uint32_t* names) {
+    /// Triangles i to i + kLanes of a block.
+    HWY_INLINE bool add(std::size_t slot, const LeafBlock& block, std::size_t i) {
         const CornerView view = CornerView::of(block);
         const FloatMask hit = view.corners ? may_hit(filter_[slot].in_all_lanes(), filter_[slot].turn(), block, i)
                                            : may_hit(filter_[slot], block.values() + i, block.triangles());
-        return add(slot, hit, block.triangles() - i, view.from(i), names + i, 0);
+        return add(slot, hit, block.triangles() - i, view.from(i), block.names() + i, 0);
     }
 
     /// Calls accept(slot, name, ShapeHit) for each triangle added that the slot's ray hits at t within [t_min, t_max].
@@ -93,14 +93,16 @@ public:
             TriangleFilter& ray = filter_[found.slot];
             for (LaneBits bits = found.candidates; bits != 0; bits &= bits - 1) {
                 const std::size_t k = first_lane(bits), to = candidates_.size;
-                for (std::size_t corner = 0; corner < 3; ++corner) {
-                    candidates_.vertex[3 * corner][to] = found.view.coordinate(k, corner, ray.x);
-                    candidates_.vertex[3 * corner + 1][to] = found.view.coordinate(k, corner, ray.y);
-                    candidates_.vertex[3 * corner + 2][to] = found.view.coordinate(k, corner, ray.z);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const float* const corner = found.view.corner(k, i);
+                    candidates_.vertex[3 * i][to] = corner[ray.x * found.view.stride];
+                    candidates_.vertex[3 * i + 1][to] = corner[ray.y * found.view.stride];
+                    candidates_.vertex[3 * i + 2][to] = corner[ray.z * found.view.stride];
                 }
-                candidates_.set_ray(to, block_, ray_of_slot_[found.slot]);
-                const std::uint32_t name =
-                    found.names ? found.names[k] : found.first_name + static_cast<std::uint32_t>(k);
+                const std::size_t i = ray_of_slot_[found.slot];
+                candidates_.set_ray(to, block_, i, rays_[block_.id[i]]);
+                const std::uint32_t name = found.names ? std::bit_cast<std::uint32_t>(found.names[k])
+                                                       : found.first_name + static_cast<std::uint32_t>(k);
                 candidates_.slot[to] = found.slot;
                 candidates_.name[to] = name;
                 // A large triangle lies in many leaves of a ray.
@@ -119,7 +121,7 @@ private:
     /// What the filter leaves of up to kLanes triangles.
     struct Found {
         CornerView view;
-        const std::uint32_t* names;  ///< Null where triangles are called first_name + k.
+        const float* names;  ///< As LeafBlock has them; null where triangles are called first_name + k.
         std::uint32_t first_name, slot;
         LaneBits candidates;
     };
@@ -129,20 +131,23 @@ private:
         static constexpr std::size_t kCapacity = 64;
         alignas(64) float vertex[9][kCapacity];
         alignas(64) double ray[6][kCapacity];  ///< As ExactRays has it.
+        alignas(64) float t_min[kCapacity], t_max[kCapacity];
         std::uint32_t slot[kCapacity], name[kCapacity];
         std::size_t size = 0;
 
-        HWY_INLINE void set_ray(std::size_t to, const RayBlock& block, std::size_t i) {
+        HWY_INLINE void set_ray(std::size_t to, const RayBlock& block, std::size_t i, const Ray& limits) {
             for (std::size_t axis = 0; axis < 3; ++axis) ray[axis][to] = block.turned_origin[axis][i];
             ray[3][to] = block.shear_x[i];
             ray[4][to] = block.shear_y[i];
             ray[5][to] = block.inverse_z[i];
+            t_min[to] = limits.t_min;
+            t_max[to] = limits.t_max;
         }
     };
 
     /// What the filter leaves of the next n triangles.
-    HWY_INLINE bool add(std::size_t slot, FloatMask hit, std::size_t n, const CornerView& view,
-                        const std::uint32_t* names, std::uint32_t first_name) {
+    HWY_INLINE bool add(std::size_t slot, FloatMask hit, std::size_t n, const CornerView& view, const float* names,
+                        std::uint32_t first_name) {
         const FloatTag d;
         const LaneBits candidates = bits_of(d, hn::And(hit, hn::FirstN(d, n)));
         found_[size_] = {view, names, first_name, static_cast<std::uint32_t>(slot), candidates};
@@ -174,18 +179,19 @@ void TriangleLanes::decide_candidates(const Accept& accept) {
         const ExactHits hits = intersect(ExactRays{ray(0), ray(1), ray(2), ray(3), ray(4), ray(5)},
                                          ExactTriangles{vertex(0), vertex(1), vertex(2), vertex(3), vertex(4),
                                                         vertex(5), vertex(6), vertex(7), vertex(8)});
+        // Many lie behind their rays: those that the rays leave from. An infinite t may be rounded to a finite one.
+        const auto rounded = hn::DemoteTo(df, hits.t);
+        const auto in_range = hn::And(hn::Ge(rounded, hn::Load(df, candidates_.t_min + i)),
+                                      hn::Le(rounded, hn::Load(df, candidates_.t_max + i)));
         const auto hit = hn::And(hits.hit, hn::FirstN(dd, candidates_.size - i));
         alignas(64) double t[kDoubles], us[kDoubles], vs[kDoubles];
         hn::Store(hits.t, dd, t);
         hn::Store(hits.u, dd, us);
         hn::Store(hits.v, dd, vs);
-        for (LaneBits bits = bits_of(dd, hit); bits != 0; bits &= bits - 1) {
+        for (LaneBits bits = bits_of(dd, hit) & bits_of(df, in_range); bits != 0; bits &= bits - 1) {
             const std::size_t k = first_lane(bits);
-            const std::uint32_t slot = candidates_.slot[i + k];
-            const Ray& limits = rays_[block_.id[ray_of_slot_[slot]]];
             const ShapeHit found = triangle_hit(t[k], us[k], vs[k]);
-            if (!TRange{limits.t_min, limits.t_max}.contains(found.t)) continue;
-            accept(slot, candidates_.name[i + k], found);
+            if (std::fabs(found.t) < kInfinity) accept(candidates_.slot[i + k], candidates_.name[i + k], found);
         }
     }
     candidates_.size = 0;

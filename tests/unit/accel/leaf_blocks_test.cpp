@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -50,19 +51,22 @@ bool same_bits(float a, float b) {
 struct Read {
     std::size_t shared = 0, runs = 0;
 
-    Read(const TriangleMesh& mesh, std::span<const std::uint32_t> names, std::uint32_t first_name) {
+    Read(const TriangleMesh& mesh, std::span<const std::uint32_t> names) {
         UnsetVector<float> data;
-        append_leaf_blocks(mesh, names, first_name, data);
+        append_leaf_blocks(mesh, names, data);
         std::size_t at = 0, done = 0;
         while (at < data.size() && done < names.size()) {
             const LeafBlock block(data.data() + at);
             EXPECT_GT(block.triangles(), 0u);
             EXPECT_LE(block.triangles(), LeafBlock::kMaxTriangles);
             EXPECT_LE(block.vertices(), LeafBlock::kMaxVertices);
-            EXPECT_EQ(block.first_name(), first_name + done);
             ++(block.vertices() > 0 ? shared : runs);
-            for (std::uint32_t i = 0; i < block.triangles(); ++i) check(mesh, names[done + i], block, i);
+            for (std::uint32_t i = 0; i < block.triangles(); ++i) {
+                EXPECT_EQ(block.name(i), names[done + i]);
+                check(mesh, names[done + i], block, i);
+            }
             done += block.triangles();
+            EXPECT_EQ(block.size() % LeafBlock::kUnit, 0u);
             at += block.size();
         }
         EXPECT_EQ(done, names.size());
@@ -94,23 +98,30 @@ private:
 
 TEST(LeafBlocks, HoldEachVertexOnceWhereTrianglesShareThem) {
     const TriangleMesh mesh = strip(14);
-    const Read read(mesh, numbers(14), 5);
+    const Read read(mesh, numbers(14));
     EXPECT_EQ(read.shared, 1u);
     EXPECT_EQ(read.runs, 0u);
 }
 
 TEST(LeafBlocks, OfAnySizeHoldEachTriangle) {
     for (std::uint32_t n = 0; n <= 70; ++n) {
-        const Read shared(strip(n), numbers(n), 0);
+        const Read shared(strip(n), numbers(n));
         EXPECT_EQ(shared.runs, 0u);
         // 14 triangles of a strip have 16 vertices.
         EXPECT_EQ(shared.shared, (n + 13) / 14);
     }
 }
 
+TEST(LeafBlocks, KeepTheNamesOfTheirTriangles) {
+    std::vector<std::uint32_t> backwards = numbers(40);
+    std::ranges::reverse(backwards);
+    EXPECT_EQ(Read(strip(40), backwards).runs, 0u);
+    EXPECT_EQ(Read(soup(40), backwards).shared, 0u);
+}
+
 TEST(LeafBlocks, AreRunsWhereTrianglesShareTooLittle) {
     for (std::uint32_t n = 6; n <= 70; ++n) {
-        const Read read(soup(n), numbers(n), 0);
+        const Read read(soup(n), numbers(n));
         EXPECT_EQ(read.runs, n % 16 == 0 || n % 16 > 5 ? (n + 15) / 16 : n / 16);
         EXPECT_EQ(read.shared, n % 16 > 0 && n % 16 <= 5 ? 1u : 0u) << "five triangles have fifteen vertices";
     }
@@ -121,7 +132,7 @@ TEST(LeafBlocks, KeepThePositionsOfVerticesBitByBit) {
     const float nan = std::nanf("");
     mesh.positions = {Vec3(0), Vec3(-0.0f, 0, 0), Vec3(nan, 0, 0), Vec3(0), Vec3(kInfinity, 1e-42f, -1e-42f)};
     mesh.triangles = {{0, 1, 2}, {3, 1, 4}, {2, 2, 2}, {3, 0, 3}};
-    const Read read(mesh, numbers(4), 0);
+    const Read read(mesh, numbers(4));
     EXPECT_EQ(read.shared, 1u);
 }
 
