@@ -7,7 +7,7 @@ namespace rayuela {
 std::vector<BenchKind> add_bench(CLI::App& app) {
     CLI::App& bench = *app.add_subcommand("bench", "Measure speed and convergence");
     bench.require_subcommand(1);
-    return {add_bench_convergence(bench), add_bench_rays(bench), add_bench_skips(bench)};
+    return {add_bench_convergence(bench), add_bench_first_image(bench), add_bench_rays(bench), add_bench_skips(bench)};
 }
 
 Result<void> run_bench(const std::vector<BenchKind>& kinds) {

@@ -21,6 +21,7 @@ Result<void> run_bench(const std::vector<BenchKind>& kinds);
 
 // Each adds one kind to `bench`.
 BenchKind add_bench_convergence(CLI::App& bench);
+BenchKind add_bench_first_image(CLI::App& bench);
 BenchKind add_bench_rays(CLI::App& bench);
 BenchKind add_bench_skips(CLI::App& bench);
 

@@ -20,6 +20,9 @@ struct AccelSettings {
     int leaf_size = 16;  ///< Primitives a leaf should hold at most, in [kMinLeafSize, kMaxLeafSize].
     KdSplit split = KdSplit::sah;
     bool few_objects = true;  ///< Few objects and large ones are tested in turn, without a tree. Not part of a scene.
+    /// Drafts of trees will do at first (see deserves_draft). Of an Accelerator: some of its trees are drafts. Not part of a
+    /// scene.
+    bool draft = false;
 
     bool operator==(const AccelSettings&) const = default;
 };

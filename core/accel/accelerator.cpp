@@ -24,7 +24,9 @@ std::shared_ptr<const Accelerator> Accelerator::build(std::vector<GeometryInstan
                                                       BuildControl& control) {
     if (control.cancelled) return nullptr;
     if (settings.kind == AcceleratorKind::list) {
-        auto list = std::make_shared<ListAccelerator>(std::move(instances), settings,
+        AccelSettings of_list = settings;
+        of_list.draft = false;
+        auto list = std::make_shared<ListAccelerator>(std::move(instances), of_list,
                                                       dynamic_cast<const ListAccelerator*>(previous));
         control.total += list->stats().primitives;
         control.done += list->stats().primitives;

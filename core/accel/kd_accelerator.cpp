@@ -14,6 +14,11 @@ bool is_for(const MeshTree& tree, const AccelSettings& settings) {
     return tree.split == settings.split && tree.leaf_size == settings.leaf_size;
 }
 
+AccelSettings settings_for(const TriangleMesh& mesh, AccelSettings settings) {
+    if (deserves_draft(mesh, settings)) settings.leaf_size = kDraftLeafSize;
+    return settings;
+}
+
 }  // namespace
 
 std::shared_ptr<const KdAccelerator> KdAccelerator::build(std::vector<GeometryInstance> instances,
@@ -41,7 +46,8 @@ bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& co
     for (const TracedObject& object : objects_) {
         if (!object.mesh() || !seen.insert(object.mesh()).second) continue;
         const auto tree = mesh_trees_.find(object.mesh());
-        if (tree == mesh_trees_.end() || !is_for(*tree->second, settings_))
+        const bool there = tree != mesh_trees_.end();
+        if (!there || !(is_for(*tree->second, settings_) || deserves_draft(*object.mesh(), settings_)))
             missing.push_back(std::get<std::shared_ptr<const TriangleMesh>>(object.shape));
     }
     for (const auto& mesh : missing) control.total += mesh->triangles.size();
@@ -51,7 +57,7 @@ bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& co
     parallel_ranges(missing.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto known = mesh_trees_.find(missing[i].get());
-            built[i] = build_mesh_tree(missing[i], settings_, control,
+            built[i] = build_mesh_tree(missing[i], settings_for(*missing[i], settings_), control,
                                        known != mesh_trees_.end() ? known->second.get() : nullptr);
         }
     });
@@ -60,6 +66,8 @@ bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& co
 
     for (const TracedObject& object : objects_)
         mesh_of_object_.push_back(object.mesh() ? mesh_trees_.at(object.mesh()).get() : nullptr);
+    settings_.draft =
+        std::ranges::any_of(mesh_of_object_, [&](const MeshTree* tree) { return tree && !is_for(*tree, settings_); });
     return true;
 }
 

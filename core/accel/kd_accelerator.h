@@ -14,6 +14,17 @@ inline bool tests_few_objects(const AccelSettings& settings, std::size_t objects
     return settings.split == KdSplit::sah && objects <= kFewObjects;
 }
 
+/// A mesh of so many triangles is worth a draft where that will do: a tree with leaves of this size, which takes about a third
+/// of the time to build and is good enough for a preview. The tree that was asked for is made from its cuts, to the same
+/// bits. A tree for another leaf size that is there already will do as well.
+inline constexpr std::size_t kDraftTriangles = 1 << 18;
+inline constexpr int kDraftLeafSize = 1024;
+
+inline bool deserves_draft(const TriangleMesh& mesh, const AccelSettings& settings) {
+    return settings.draft && settings.split == KdSplit::sah && settings.leaf_size < kDraftLeafSize &&
+           mesh.triangles.size() >= kDraftTriangles;
+}
+
 /// Two levels of kd-trees: one over each distinct mesh in its own space, one over the objects. Planes are tested in turn.
 class KdAccelerator final : public Accelerator {
 public:

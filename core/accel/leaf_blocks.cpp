@@ -56,10 +56,13 @@ public:
 private:
     /// kMaxVertices where there is no room.
     std::uint32_t number_of(std::uint32_t vertex) {
-        for (std::uint32_t i = 0; i < vertices_; ++i) {
+        std::uint16_t& alike = alike_[vertex * kGoldenRatio >> (32 - kHashBits)];
+        for (std::uint32_t rest = alike; rest != 0; rest &= rest - 1) {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
             if (vertex_[i] == vertex) return i;
         }
         if (vertices_ == LeafBlock::kMaxVertices) return vertices_;
+        alike = static_cast<std::uint16_t>(alike | 1u << vertices_);
         vertex_[vertices_] = vertex;
         return vertices_++;
     }
@@ -69,7 +72,11 @@ private:
         return max_component(bounds.extent());
     }
 
+    static constexpr std::uint32_t kGoldenRatio = 0x9e3779b1, kHashBits = 5;  ///< Knuth's multiplicative hashing.
+
     const TriangleMesh& mesh_;
+    std::array<std::uint16_t, 1 << kHashBits>
+        alike_{};  ///< Of each hash the numbers of the vertices that have it, as bits.
     std::uint32_t triangles_ = 0, vertices_ = 0;
     std::array<std::uint32_t, LeafBlock::kMaxVertices> vertex_;  ///< In the mesh.
     std::array<std::uint32_t, LeafBlock::kMaxTriangles> words_;  ///< As in the block, without extents.

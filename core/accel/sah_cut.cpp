@@ -21,6 +21,8 @@ namespace rayuela::HWY_NAMESPACE {
 
 constexpr int kBins = 32;
 constexpr std::size_t kExactLimit = 32;
+/// Of larger nodes every so many-th reference is counted that at least so many are: planes are as good.
+constexpr std::size_t kCounted = 1 << 13;
 constexpr double kEmptyBonus = 0.8;
 
 /// Planes across one axis, and how many references lie below and above each. Room for whole vectors.
@@ -34,8 +36,13 @@ struct Planes {
 /// Keeps the cheapest of the planes offered to it.
 class CutSearch {
 public:
-    CutSearch(const Bounds3& cell, std::size_t references, float step_cost)
-        : cell_(cell), extent_(Vec3d(cell.hi) - Vec3d(cell.lo)), references_(references), step_cost_(step_cost) {
+    /// `weight`: references that each of those stands for which are counted.
+    CutSearch(const Bounds3& cell, std::size_t counted, double weight, float step_cost)
+        : cell_(cell),
+          extent_(Vec3d(cell.hi) - Vec3d(cell.lo)),
+          counted_(counted),
+          weight_(weight),
+          step_cost_(step_cost) {
         const Vec3d& e = extent_;
         has_area_ = e.x * e.y + e.y * e.z + e.z * e.x > 0;
     }
@@ -49,7 +56,7 @@ public:
         const Doubles lo = hn::Set(dd, cell_.lo[axis]), hi = hn::Set(dd, cell_.hi[axis]);
         const Slope slope = slope_of(axis);
         const Doubles a = hn::Set(dd, slope.per_depth), b = hn::Set(dd, slope.at_none), zero = hn::Zero(dd);
-        const Doubles extent = hn::Set(dd, extent_[axis]), whole = hn::Set(dd, slope_of(0).of(extent_.x));
+        const Doubles extent = hn::Set(dd, extent_[axis]), per_whole = hn::Set(dd, weight_ / slope_of(0).of(extent_.x));
         for (std::size_t i = 0; i < planes.size; i += kDoubles) {
             const Doubles plane = hn::PromoteTo(dd, hn::Load(df, planes.plane + i)), depth = plane - lo;
             const Doubles below = hn::PromoteTo(dd, hn::Load(di, planes.below + i)),
@@ -57,7 +64,7 @@ public:
             const Doubles tests = (a * depth + b) * below + (a * (extent - depth) + b) * above;
             const auto cuts_off_space = hn::Or(hn::Eq(below, zero), hn::Eq(above, zero));
             const Doubles bonus = hn::IfThenElse(cuts_off_space, hn::Set(dd, kEmptyBonus), hn::Set(dd, 1));
-            const Doubles cost = bonus * (hn::Set(dd, step_cost_) + tests / whole);
+            const Doubles cost = bonus * (hn::Set(dd, step_cost_) + tests * per_whole);
             const auto inside = hn::And(hn::Gt(plane, lo), hn::Lt(plane, hi));
             LaneBits better = bits_of(dd, hn::And(inside, hn::Lt(cost, hn::Set(dd, best_cost_))));
             if (better == 0) continue;
@@ -86,19 +93,35 @@ private:
     void take(int axis, const Planes& planes, std::size_t i, double cost) {
         best_cost_ = cost;
         const auto both = static_cast<std::size_t>(planes.below[i] + planes.above[i]);
-        best_ = {.axis = axis, .plane = planes.plane[i], .cost = cost, .duplicates = both - references_};
+        const auto duplicates = static_cast<std::size_t>(weight_ * static_cast<double>(both - counted_));
+        best_ = {.axis = axis, .plane = planes.plane[i], .cost = cost, .duplicates = duplicates};
     }
 
     Bounds3 cell_;
     Vec3d extent_;
     bool has_area_;
-    std::size_t references_;
-    double step_cost_, best_cost_ = INFINITY;
+    std::size_t counted_;
+    double weight_, step_cost_, best_cost_ = INFINITY;
     KdCut best_;
 };
 
+using Counts = hn::Vec<hn::RebindToSigned<FloatTag>>;
+
+/// One more in the lanes of the mask.
+HWY_INLINE Counts count_up(Counts counts, FloatMask where) {
+    const hn::RebindToSigned<FloatTag> di;
+#if HWY_TARGET <= HWY_AVX3
+    return hn::IfThenElse(hn::RebindMask(di, where), hn::Add(counts, hn::Set(di, 1)), counts);
+#else
+    // A mask's lanes are 0 or -1.
+    return hn::Sub(counts, hn::VecFromMask(di, hn::RebindMask(di, where)));
+#endif
+}
+
 /// Every plane at which a box begins or ends. A flat box within the plane is below it.
-HWY_INLINE void search_exact(std::span<const KdReference> references, CutSearch& search) {
+HWY_INLINE std::optional<KdCut> search_exact(std::span<const KdReference> references, const Bounds3& cell,
+                                             float step_cost) {
+    CutSearch search(cell, references.size(), 1, step_cost);
     const FloatTag d;
     const hn::RebindToSigned<FloatTag> di;
     const std::size_t n = references.size();
@@ -119,15 +142,15 @@ HWY_INLINE void search_exact(std::span<const KdReference> references, CutSearch&
             for (std::size_t k = 0; k < n; ++k) {
                 const FloatMask is_below = hn::Lt(hn::Set(d, begins[k]), plane);
                 const FloatMask is_above = hn::Gt(hn::Set(d, planes.plane[n + k]), plane);
-                // A mask's lanes are 0 or -1.
-                below = hn::Sub(below, hn::VecFromMask(di, hn::RebindMask(di, is_below)));
-                above = hn::Sub(above, hn::VecFromMask(di, hn::RebindMask(di, is_above)));
+                below = count_up(below, is_below);
+                above = count_up(above, is_above);
             }
             hn::StoreU(below, di, planes.below + i);
             hn::StoreU(above, di, planes.above + i);
         }
         search.consider(axis, planes);
     }
+    return search.best();
 }
 
 /// Coordinates of a box: lo.x lo.y lo.z hi.x, or lo.z hi.x hi.y hi.z, so that no vector reaches beyond it.
@@ -145,12 +168,13 @@ public:
         }
     }
 
-    HWY_INLINE void count(std::span<const KdReference> references) {
+    HWY_INLINE void count(std::span<const KdReference> references, std::size_t stride) {
         const CoordinateTag d;
         const hn::RebindToSigned<CoordinateTag> di;
         alignas(16) std::int32_t begin[4], end[4];
-        for (const KdReference& reference : references) {
-            const float* const box = &reference.box.lo.x;
+        std::size_t set = 0;
+        for (std::size_t k = 0; k < references.size(); k += stride) {
+            const float* const box = &references[k].box.lo.x;
             for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
                 hn::Store(hn::ConvertTo(di, depth(box + kLow, origin_low_, scale_low_, i)), di, begin + i);
                 // A box that ends at a plane is not above it: its end is in the bin before.
@@ -161,13 +185,17 @@ public:
             }
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const std::int32_t last = end[axis + 1];
-                ++begins[axis][static_cast<std::size_t>(std::min(begin[axis], last))];
-                ++ends[axis][static_cast<std::size_t>(last)];
+                ++begins_[set][axis][static_cast<std::size_t>(std::min(begin[axis], last))];
+                ++ends_[set][axis][static_cast<std::size_t>(last)];
             }
+            set = 1 - set;
         }
     }
 
-    std::array<std::array<std::int32_t, kBins>, 3> begins{}, ends{};
+    std::int32_t begins(std::size_t axis, std::size_t bin) const {
+        return begins_[0][axis][bin] + begins_[1][axis][bin];
+    }
+    std::int32_t ends(std::size_t axis, std::size_t bin) const { return ends_[0][axis][bin] + ends_[1][axis][bin]; }
 
 private:
     static HWY_INLINE hn::Vec<CoordinateTag> depth(const float* box, const Coordinates& origin,
@@ -177,6 +205,8 @@ private:
         return hn::Min(bins, hn::Set(d, float{kBins}));
     }
 
+    /// Two sets take turns: neighbours fall into the same bins, and to count up what was just counted up waits.
+    std::array<std::array<std::array<std::int32_t, kBins>, 3>, 2> begins_{}, ends_{};
     alignas(16) Coordinates origin_low_{}, scale_low_{}, origin_high_{}, scale_high_{};
 };
 
@@ -197,11 +227,15 @@ HWY_INLINE Bounds3 bounds_of(std::span<const KdReference> references) {
 }
 
 /// Planes at equal distances over what the node holds, so that the outermost cut off empty space.
-HWY_INLINE void search_binned(std::span<const KdReference> references, CutSearch& search) {
+HWY_INLINE std::optional<KdCut> search_binned(std::span<const KdReference> references, const Bounds3& cell,
+                                              float step_cost) {
+    const std::size_t stride = std::max<std::size_t>(1, references.size() / kCounted);
+    const std::size_t counted = (references.size() + stride - 1) / stride;
+    CutSearch search(cell, counted, static_cast<double>(references.size()) / static_cast<double>(counted), step_cost);
     const Bounds3 held = bounds_of(references);
     const Vec3 per_unit = float{kBins} / (held.hi - held.lo);
     Bins bins(held, per_unit);
-    bins.count(references);
+    bins.count(references, stride);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<int>(axis);
         // Axes too flat or too long to be divided in float are left alone.
@@ -209,25 +243,26 @@ HWY_INLINE void search_binned(std::span<const KdReference> references, CutSearch
         Planes planes;
         planes.size = kBins + 1;
         planes.below[0] = 0;
-        planes.above[0] = static_cast<std::int32_t>(references.size());
-        for (std::size_t k = 0; k < kBins; ++k) {
-            planes.plane[k] = held.lo[a] + static_cast<float>(k) / per_unit[a];
-            planes.below[k + 1] = planes.below[k] + bins.begins[axis][k];
-            planes.above[k + 1] = planes.above[k] - bins.ends[axis][k];
-        }
+        planes.above[0] = static_cast<std::int32_t>(counted);
+        for (std::size_t k = 0; k < kBins; ++k) planes.plane[k] = held.lo[a] + static_cast<float>(k) / per_unit[a];
         planes.plane[kBins] = held.hi[a];
+        for (std::size_t k = 0; k < kBins; ++k) {
+            planes.below[k + 1] = planes.below[k] + bins.begins(axis, k);
+            planes.above[k + 1] = planes.above[k] - bins.ends(axis, k);
+        }
+        // Between the outermost planes something lies on both sides, be it among what is not counted.
+        for (std::size_t k = 1; k < kBins && stride > 1; ++k) {
+            planes.below[k] = std::max(1, planes.below[k]);
+            planes.above[k] = std::max(1, planes.above[k]);
+        }
         search.consider(a, planes);
     }
+    return search.best();
 }
 
 HWY_ATTR std::optional<KdCut> find_cut(std::span<const KdReference> references, const Bounds3& cell, float step_cost) {
-    CutSearch search(cell, references.size(), step_cost);
-    if (references.size() <= kExactLimit) {
-        search_exact(references, search);
-    } else {
-        search_binned(references, search);
-    }
-    return search.best();
+    return references.size() <= kExactLimit ? search_exact(references, cell, step_cost)
+                                            : search_binned(references, cell, step_cost);
 }
 
 }  // namespace rayuela::HWY_NAMESPACE

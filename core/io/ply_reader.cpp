@@ -2,6 +2,7 @@
 
 #include "core/io/file_bytes.h"
 #include "core/io/mesh_builder.h"
+#include "core/io/ply_header.h"
 
 #include <fmt/format.h>
 
@@ -17,72 +18,41 @@ namespace rayuela {
 
 namespace {
 
-enum class Type : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
-enum class Encoding : std::uint8_t { ascii, little, big };
-
-struct TypeName {
-    std::string_view name;
-    Type type;
-};
-constexpr std::array<TypeName, 16> kTypeNames{{{"char", Type::i8},
-                                               {"int8", Type::i8},
-                                               {"uchar", Type::u8},
-                                               {"uint8", Type::u8},
-                                               {"short", Type::i16},
-                                               {"int16", Type::i16},
-                                               {"ushort", Type::u16},
-                                               {"uint16", Type::u16},
-                                               {"int", Type::i32},
-                                               {"int32", Type::i32},
-                                               {"uint", Type::u32},
-                                               {"uint32", Type::u32},
-                                               {"float", Type::f32},
-                                               {"float32", Type::f32},
-                                               {"double", Type::f64},
-                                               {"float64", Type::f64}}};
-
-struct Property {
-    std::string name;
-    Type type;
-    std::optional<Type> count_type;  ///< Of a list.
-};
-
-struct Element {
-    std::string name;
-    std::uint64_t count = 0;
-    std::vector<Property> properties;
-};
-
-struct Header {
-    Encoding encoding = Encoding::ascii;
-    std::vector<Element> elements;
-};
-
 /// Reads numbers one after another from the body; every number of a PLY file fits a double exactly.
 class Body {
 public:
-    Body(std::string_view bytes, Encoding encoding) : bytes_(bytes), encoding_(encoding) {}
+    Body(std::string_view bytes, PlyEncoding encoding) : bytes_(bytes), encoding_(encoding) {}
 
     std::size_t left() const { return bytes_.size(); }
+    /// The next `count` records of `size` bytes as they stand, numbers in the machine's order, and goes on behind them where
+    /// `take` does; nothing where they are not there in this form.
+    template <typename Take>
+    bool take_records(std::uint64_t count, std::size_t size, const Take& take) {
+        constexpr PlyEncoding kNative =
+            std::endian::native == std::endian::little ? PlyEncoding::little : PlyEncoding::big;
+        if (encoding_ != kNative || count > bytes_.size() / size || !take(bytes_.data())) return false;
+        bytes_.remove_prefix(count * size);
+        return true;
+    }
 
-    bool read(Type type, double& value) {
-        if (encoding_ == Encoding::ascii) return read_word(value);
+    bool read(PlyType type, double& value) {
+        if (encoding_ == PlyEncoding::ascii) return read_word(value);
         switch (type) {
-            case Type::i8:
+            case PlyType::i8:
                 return read_binary<std::int8_t>(value);
-            case Type::u8:
+            case PlyType::u8:
                 return read_binary<std::uint8_t>(value);
-            case Type::i16:
+            case PlyType::i16:
                 return read_binary<std::int16_t>(value);
-            case Type::u16:
+            case PlyType::u16:
                 return read_binary<std::uint16_t>(value);
-            case Type::i32:
+            case PlyType::i32:
                 return read_binary<std::int32_t>(value);
-            case Type::u32:
+            case PlyType::u32:
                 return read_binary<std::uint32_t>(value);
-            case Type::f32:
+            case PlyType::f32:
                 return read_binary<float>(value);
-            case Type::f64:
+            case PlyType::f64:
                 return read_binary<double>(value);
         }
         return false;
@@ -95,7 +65,8 @@ private:
         std::array<char, sizeof(T)> raw;
         std::memcpy(raw.data(), bytes_.data(), sizeof(T));
         bytes_.remove_prefix(sizeof(T));
-        if ((encoding_ == Encoding::little) != (std::endian::native == std::endian::little)) std::ranges::reverse(raw);
+        if ((encoding_ == PlyEncoding::little) != (std::endian::native == std::endian::little))
+            std::ranges::reverse(raw);
         value = static_cast<double>(std::bit_cast<T>(raw));
         return true;
     }
@@ -112,7 +83,36 @@ private:
     }
 
     std::string_view bytes_;
-    Encoding encoding_;
+    PlyEncoding encoding_;
+};
+
+/// Where each property of a vertex goes: x, y, z, nx, ny, nz, u, v, or nowhere.
+class VertexSlots {
+public:
+    static constexpr std::size_t kCount = 8;
+
+    explicit VertexSlots(const PlyElement& element) : of_property_(element.properties.size(), kCount) {
+        constexpr std::array<std::array<std::string_view, 3>, kCount> kNames{
+            {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"}}};
+        for (std::size_t p = 0; p < of_property_.size(); ++p) {
+            if (element.properties[p].count_type) continue;
+            for (std::size_t slot = 0; slot < kCount; ++slot) {
+                if (std::ranges::find(kNames[slot], element.properties[p].name) == kNames[slot].end()) continue;
+                of_property_[p] = slot;
+                present_[slot] = true;
+            }
+        }
+    }
+
+    /// kCount for a property that goes nowhere.
+    std::size_t operator[](std::size_t property) const { return of_property_[property]; }
+    bool positions() const { return present_[0] && present_[1] && present_[2]; }
+    bool normals() const { return present_[3] && present_[4] && present_[5]; }
+    bool uvs() const { return present_[6] && present_[7]; }
+
+private:
+    std::vector<std::size_t> of_property_;
+    std::array<bool, kCount> present_{};
 };
 
 class Parser {
@@ -120,10 +120,10 @@ public:
     Parser(std::string_view bytes, const std::string& name) : rest_(bytes), name_(name) {}
 
     MeshResult run(Problems* warnings) {
-        const Result<Header> header = read_header();
+        const Result<PlyHeader> header = read_ply_header(rest_, name_);
         if (!header) return tl::unexpected(header.error());
         Body body(rest_, header->encoding);
-        for (const Element& element : header->elements) {
+        for (const PlyElement& element : header->elements) {
             if (element.properties.empty()) continue;
             Result<void> done = element.name == "vertex" ? read_vertices(element, body)
                                 : element.name == "face" ? read_faces(element, body)
@@ -135,101 +135,30 @@ public:
     }
 
 private:
-    std::string_view next_line() {
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        std::string_view line = rest_.substr(0, end);
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        ++line_;
-        return line;
-    }
-
-    tl::unexpected<Problems> bad_header(std::string cause) const {
-        return fail(name_, fmt::format("line {}", line_), std::move(cause));
-    }
-
-    Result<Header> read_header();
-    Result<void> read_vertices(const Element& element, Body& body);
-    Result<void> read_faces(const Element& element, Body& body);
-    Result<void> skip(const Element& element, Body& body);
+    Result<void> read_vertices(const PlyElement& element, Body& body);
+    Result<void> read_faces(const PlyElement& element, Body& body);
+    bool take_plain_vertices(const PlyElement& element, const VertexSlots& slots, Body& body);
+    bool take_plain_faces(const PlyElement& element, Body& body);
+    Result<void> skip(const PlyElement& element, Body& body);
     Result<void> build_triangles();
     template <typename Visit>
-    Result<void> read_elements(const Element& element, Body& body, const Visit& visit);
+    Result<void> read_elements(const PlyElement& element, Body& body, const Visit& visit);
 
     std::string_view rest_;
-    std::size_t line_ = 0;
     const std::string& name_;
     TriangleMesh mesh_;
     std::vector<std::uint32_t> corners_;  ///< Of all faces.
     std::vector<std::size_t> face_ends_;  ///< Where each face's corners end.
 };
 
-std::vector<std::string_view> split(std::string_view line) {
-    std::vector<std::string_view> words;
-    while (true) {
-        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-        if (line.empty()) return words;
-        words.push_back(line.substr(0, line.find_first_of(" \t")));
-        line.remove_prefix(words.back().size());
-    }
-}
-
-std::optional<Type> find_type(std::string_view name) {
-    const auto found = std::ranges::find(kTypeNames, name, &TypeName::name);
-    return found == kTypeNames.end() ? std::nullopt : std::optional(found->type);
-}
-
-Result<Header> Parser::read_header() {
-    Header header;
-    if (next_line() != "ply") return bad_header("does not begin with 'ply'");
-    bool has_format = false;
-    while (!rest_.empty()) {
-        const std::vector<std::string_view> words = split(next_line());
-        if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
-        if (words[0] == "end_header") {
-            if (!has_format) return bad_header("names no format");
-            return header;
-        }
-        if (words[0] == "format" && words.size() >= 2) {
-            has_format = true;
-            if (words[1] == "ascii") {
-                header.encoding = Encoding::ascii;
-            } else if (words[1] == "binary_little_endian") {
-                header.encoding = Encoding::little;
-            } else if (words[1] == "binary_big_endian") {
-                header.encoding = Encoding::big;
-            } else {
-                return bad_header(fmt::format("unknown format '{}'", words[1]));
-            }
-        } else if (words[0] == "element" && words.size() == 3) {
-            Element element{std::string(words[1]), 0, {}};
-            const auto [end, error] =
-                std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-            if (error != std::errc() || end != words[2].data() + words[2].size()) {
-                return bad_header(fmt::format("'{}' is no count", words[2]));
-            }
-            header.elements.push_back(std::move(element));
-        } else if (words[0] == "property" && !header.elements.empty() && (words.size() == 3 || words.size() == 5)) {
-            const bool is_list = words.size() == 5;
-            const auto type = find_type(words[is_list ? 3 : 1]);
-            const auto count_type = is_list ? find_type(words[2]) : std::nullopt;
-            if (!type || (is_list && (words[1] != "list" || !count_type))) return bad_header("unknown property type");
-            header.elements.back().properties.push_back({std::string(words.back()), *type, count_type});
-        } else {
-            return bad_header(fmt::format("'{}' is not understood", words[0].substr(0, 32)));
-        }
-    }
-    return bad_header("the header has no end");
-}
-
 /// Calls visit(element index, property index, items) for each property of each element, in the file's order.
 template <typename Visit>
-Result<void> Parser::read_elements(const Element& element, Body& body, const Visit& visit) {
+Result<void> Parser::read_elements(const PlyElement& element, Body& body, const Visit& visit) {
     std::vector<double> items;
     for (std::uint64_t i = 0; i < element.count; ++i) {
         const auto place = [&] { return fmt::format("{} {}", element.name, i); };
         for (std::size_t p = 0; p < element.properties.size(); ++p) {
-            const Property& property = element.properties[p];
+            const PlyProperty& property = element.properties[p];
             double count = 1;
             if (property.count_type && !body.read(*property.count_type, count))
                 return fail(name_, place(), "is cut off");
@@ -250,43 +179,85 @@ Result<void> Parser::read_elements(const Element& element, Body& body, const Vis
 
 using Cause = std::optional<std::string>;
 
-Result<void> Parser::skip(const Element& element, Body& body) {
+Result<void> Parser::skip(const PlyElement& element, Body& body) {
     return read_elements(element, body, [](std::size_t, const std::vector<double>&) { return Cause{}; });
 }
 
-Result<void> Parser::read_vertices(const Element& element, Body& body) {
-    // Where each property goes: x, y, z, nx, ny, nz, u, v.
-    constexpr std::array<std::array<std::string_view, 3>, 8> kNames{
-        {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"}}};
-    std::vector<std::size_t> slots(element.properties.size(), kNames.size());
-    std::array<bool, kNames.size()> present{};
-    for (std::size_t p = 0; p < slots.size(); ++p) {
-        if (element.properties[p].count_type) continue;
-        for (std::size_t slot = 0; slot < kNames.size(); ++slot) {
-            if (std::ranges::find(kNames[slot], element.properties[p].name) == kNames[slot].end()) continue;
-            slots[p] = slot;
-            present[slot] = true;
-        }
+/// Vertices of floats, as nearly all binary files have them. False, and nothing is taken, where there is anything else.
+bool Parser::take_plain_vertices(const PlyElement& element, const VertexSlots& slots, Body& body) {
+    std::array<std::size_t, VertexSlots::kCount> offset{};
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const PlyProperty& property = element.properties[p];
+        if (property.count_type || property.type != PlyType::f32) return false;
+        if (slots[p] < VertexSlots::kCount) offset[slots[p]] = p * sizeof(float);
     }
-    if (!present[0] || !present[1] || !present[2]) return fail(name_, "vertex", "has no property x, y or z");
-    const bool has_normals = present[3] && present[4] && present[5], has_uvs = present[6] && present[7];
+    const std::size_t size = element.properties.size() * sizeof(float);
+    return body.take_records(element.count, size, [&](const char* records) {
+        const auto values = [&](auto& of_vertices, std::size_t first_slot, bool present) {
+            using Value = typename std::decay_t<decltype(of_vertices)>::value_type;
+            if (!present) return;
+            of_vertices.resize(element.count);
+            for (std::size_t i = 0; i < element.count; ++i) {
+                for (int k = 0; k < Value::length(); ++k) {
+                    const char* const at = records + i * size + offset[first_slot + static_cast<std::size_t>(k)];
+                    std::memcpy(&of_vertices[i][k], at, sizeof(float));
+                }
+            }
+        };
+        values(mesh_.positions, 0, true);
+        if (!std::ranges::all_of(mesh_.positions, [](const Vec3& p) { return is_finite(p); })) {
+            mesh_.positions.clear();
+            return false;
+        }
+        values(mesh_.normals, 3, slots.normals());
+        values(mesh_.uvs, 6, slots.uvs());
+        return true;
+    });
+}
 
-    std::array<float, kNames.size() + 1> values{};
-    const std::size_t last = slots.size() - 1;
+Result<void> Parser::read_vertices(const PlyElement& element, Body& body) {
+    const VertexSlots slots(element);
+    if (!slots.positions()) return fail(name_, "vertex", "has no property x, y or z");
+    if (mesh_.positions.empty() && take_plain_vertices(element, slots, body)) return {};
+
+    std::array<float, VertexSlots::kCount + 1> values{};
+    const std::size_t last = element.properties.size() - 1;
     return read_elements(element, body, [&](std::size_t p, const std::vector<double>& items) -> Cause {
         if (!items.empty()) values[slots[p]] = static_cast<float>(items[0]);
         if (p != last) return {};
         if (!is_finite({values[0], values[1], values[2]})) return "is not finite";
         mesh_.positions.emplace_back(values[0], values[1], values[2]);
-        if (has_normals) mesh_.normals.emplace_back(values[3], values[4], values[5]);
-        if (has_uvs) mesh_.uvs.emplace_back(values[6], values[7]);
+        if (slots.normals()) mesh_.normals.emplace_back(values[3], values[4], values[5]);
+        if (slots.uvs()) mesh_.uvs.emplace_back(values[6], values[7]);
         return {};
     });
 }
 
-Result<void> Parser::read_faces(const Element& element, Body& body) {
+/// Triangles of 32-bit indices over vertices that are there, with nothing beside them, as nearly all binary files have them.
+/// False, and nothing is taken, where there is anything else.
+bool Parser::take_plain_faces(const PlyElement& element, Body& body) {
+    constexpr std::size_t kSize = 1 + sizeof(glm::uvec3);
+    const PlyProperty& indices = element.properties[0];
+    if (element.properties.size() > 1 || indices.count_type != PlyType::u8) return false;
+    if (indices.type != PlyType::i32 && indices.type != PlyType::u32) return false;
+    if (indices.name != "vertex_indices" && indices.name != "vertex_index") return false;
+    return body.take_records(element.count, kSize, [&](const char* records) {
+        mesh_.triangles.resize(element.count);
+        for (std::size_t i = 0; i < element.count; ++i) {
+            glm::uvec3& t = mesh_.triangles[i];
+            std::memcpy(&t, records + i * kSize + 1, sizeof(t));
+            if (records[i * kSize] == 3 && std::max({t.x, t.y, t.z}) < mesh_.positions.size()) continue;
+            mesh_.triangles.clear();
+            return false;
+        }
+        return true;
+    });
+}
+
+Result<void> Parser::read_faces(const PlyElement& element, Body& body) {
+    if (face_ends_.empty() && mesh_.triangles.empty() && take_plain_faces(element, body)) return {};
     return read_elements(element, body, [&](std::size_t p, const std::vector<double>& items) -> Cause {
-        const Property& property = element.properties[p];
+        const PlyProperty& property = element.properties[p];
         if (!property.count_type || (property.name != "vertex_indices" && property.name != "vertex_index")) return {};
         if (items.size() < 3) return fmt::format("has {} vertices, needs 3", items.size());
         for (const double index : items) {
@@ -300,7 +271,7 @@ Result<void> Parser::read_faces(const Element& element, Body& body) {
 
 Result<void> Parser::build_triangles() {
     std::vector<glm::uvec3> cut;
-    mesh_.triangles.reserve(face_ends_.size());
+    mesh_.triangles.reserve(mesh_.triangles.size() + face_ends_.size());
     std::size_t first = 0;
     for (std::size_t face = 0; face < face_ends_.size(); ++face) {
         const std::span corners(corners_.data() + first, face_ends_[face] - first);

@@ -65,29 +65,32 @@ void ProgressiveRenderer::set_shortcuts(const Shortcuts& shortcuts) {
     if (!render_scene_ || before == shortcuts) return;
     if (before.few_objects != shortcuts.few_objects) {
         BuildControl control;
-        render_scene_ = arena_.execute([&] {
-            return RenderScene::update(render_scene_.get(), render_scene_->shared_scene(), {.accel = true}, control,
-                                       shortcuts);
-        });
+        render_scene_ = updated(render_scene_->shared_scene(), {.accel = true}, control);
     }
     restart();
+}
+
+std::shared_ptr<const RenderScene> ProgressiveRenderer::updated(std::shared_ptr<const Scene> scene,
+                                                                const SceneChanges& changes, BuildControl& control) {
+    return arena_.execute([&] {
+        return RenderScene::update(render_scene_.get(), std::move(scene), changes, control, options_.shortcuts,
+                                   drafts_);
+    });
 }
 
 bool ProgressiveRenderer::take(std::shared_ptr<const Scene> scene, BuildControl& control) {
     const SceneChanges changes = render_scene_ ? diff(render_scene_->scene(), *scene) : all_changes();
     const auto start = Clock::now();
-    auto updated = arena_.execute([&] {
-        return RenderScene::update(render_scene_.get(), std::move(scene), changes, control, options_.shortcuts);
-    });
-    if (!updated) return false;
-    const glm::ivec2 size(updated->scene().film.width, updated->scene().film.height);
+    auto next = updated(std::move(scene), changes, control);
+    if (!next) return false;
+    const glm::ivec2 size(next->scene().film.width, next->scene().film.height);
     if (!has_size(film_.get(), size)) {
         film_ = std::make_unique<Accumulation>(size.x, size.y);
         film_->set_options(sampling_);
     }
-    const bool restarts = !goes_on(changes, *updated);
-    render_scene_ = std::move(updated);
-    memory_bytes_ = render_scene_->memory_bytes() + film_->film().memory_bytes();
+    const bool restarts = !goes_on(changes, *next);
+    render_scene_ = std::move(next);
+    measure_memory();
     if (changes.geometry || changes.accel) build_seconds_ = seconds_since(start);
     if (restarts) {
         restart();
@@ -109,6 +112,13 @@ bool ProgressiveRenderer::goes_on(const SceneChanges& changes, const RenderScene
     return true;
 }
 
+void ProgressiveRenderer::take_trees(const Accelerator& known) {
+    render_scene_ = arena_.execute([&] { return render_scene_->with_trees(known); });
+    measure_memory();
+    build_seconds_ += known.stats().build_seconds;
+    film_unpublished_ |= film_shown_;
+}
+
 void ProgressiveRenderer::restart() {
     film_->restart();
     if (preview_) preview_->restart();
@@ -128,6 +138,7 @@ ScheduleState ProgressiveRenderer::schedule_state() const {
             .height = film_->film().height(),
             .interactive = interactive_,
             .paused = paused_,
+            .drafted = drafted_,
             .max_samples = settings.max_samples,
             .max_seconds = settings.max_seconds,
             .samples = film_->samples(),

@@ -19,6 +19,9 @@ class ProgressiveRenderer {
 public:
     ProgressiveRenderer(bool interactive, int threads, const PathTracerOptions& options = {});
 
+    /// Whether drafts of trees will do at first; else, and by default, `take` builds those the scene asks for.
+    void set_drafts(bool drafts) { drafts_ = drafts; }
+
     /// Makes `scene` the one to render; rebuilds what differs from the one before and restarts accumulation where the
     /// image changes. False, and nothing happens, when the build was cancelled.
     bool take(std::shared_ptr<const Scene> scene, BuildControl& control);
@@ -30,7 +33,15 @@ public:
     /// Throws all samples away.
     void restart();
 
+    /// Replaces drafts by the trees of `known`, and goes on with the image as it is.
+    void take_trees(const Accelerator& known);
+    /// Somebody builds trees in place of the drafts: nothing is done meanwhile but previews.
+    void set_drafted(bool drafted) { drafted_ = drafted; }
+    bool drafted() const { return drafted_; }
+
     bool has_scene() const { return render_scene_ != nullptr; }
+    const std::shared_ptr<const RenderScene>& render_scene() const { return render_scene_; }
+    int threads() const { return threads_; }
     const Scene& scene() const { return render_scene_->scene(); }
     /// Wall time of the last update that built trees.
     double build_seconds() const { return build_seconds_; }
@@ -51,6 +62,9 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    std::shared_ptr<const RenderScene> updated(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
+                                               BuildControl& control);
+    void measure_memory() { memory_bytes_ = render_scene_->memory_bytes() + film_->film().memory_bytes(); }
     ScheduleState schedule_state() const;
     glm::ivec2 size_of(const Pass& pass) const;
     bool film_complete() const { return film_->samples() > 0; }
@@ -59,7 +73,7 @@ private:
     const bool interactive_;
     PathTracerOptions options_;
     SamplingOptions sampling_;
-    bool paused_ = false;
+    bool paused_ = false, drafts_ = false, drafted_ = false;
     int threads_ = 0;
     tbb::task_arena arena_;
     std::unique_ptr<tbb::global_control> oversubscription_;  ///< Where more threads are asked for than TBB has.

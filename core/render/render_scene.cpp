@@ -141,7 +141,7 @@ void RenderScene::flatten(std::vector<GeometryInstance>& instances, FlatObjects&
 
 std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previous, std::shared_ptr<const Scene> scene,
                                                        const SceneChanges& changes, BuildControl& control,
-                                                       const Shortcuts& shortcuts) {
+                                                       const Shortcuts& shortcuts, bool draft) {
     auto next = previous ? std::make_shared<RenderScene>(*previous) : std::make_shared<RenderScene>();
     next->scene_ = std::move(scene);
     const bool materials = !previous || changes.materials;
@@ -159,6 +159,7 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
         if (trees) {
             AccelSettings settings = next->scene_->render.accel;
             settings.few_objects = shortcuts.few_objects;
+            settings.draft = draft;
             next->accelerator_ = Accelerator::build(std::move(instances), settings,
                                                     previous ? &previous->accelerator() : nullptr, control);
             if (!next->accelerator_) return nullptr;
@@ -171,6 +172,22 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
     const bool same_lights = !may_shine || next->update_lights(previous);
     next->features_ = next->find_features();
     if (may_shine) next->update_emission(previous, same_lights);
+    return next;
+}
+
+std::shared_ptr<const Accelerator> RenderScene::without_drafts(BuildControl& control) const {
+    const auto instances = accelerator_->instances();
+    AccelSettings settings = accelerator_->settings();
+    settings.draft = false;
+    return Accelerator::build({instances.begin(), instances.end()}, settings, accelerator_.get(), control);
+}
+
+std::shared_ptr<const RenderScene> RenderScene::with_trees(const Accelerator& known) const {
+    const auto instances = accelerator_->instances();
+    BuildControl control;
+    auto next = std::make_shared<RenderScene>(*this);
+    next->accelerator_ =
+        Accelerator::build({instances.begin(), instances.end()}, accelerator_->settings(), &known, control);
     return next;
 }
 

@@ -37,10 +37,16 @@ struct PackedMaterial {
 class RenderScene {
 public:
     /// Derives `scene`, sharing with `previous` (may be null) what `changes` leaves alone. Null when cancelled. Heeds
-    /// Shortcuts::few_objects wherever trees are built.
+    /// Shortcuts::few_objects wherever trees are built. `draft`: drafts of trees will do.
     static std::shared_ptr<const RenderScene> update(const RenderScene* previous, std::shared_ptr<const Scene> scene,
                                                      const SceneChanges& changes, BuildControl& control,
-                                                     const Shortcuts& shortcuts = {});
+                                                     const Shortcuts& shortcuts = {}, bool draft = false);
+    /// Whether some of the trees are drafts.
+    bool has_drafts() const { return accelerator_->settings().draft; }
+    /// The same objects in the trees they were meant to have. Null when cancelled.
+    std::shared_ptr<const Accelerator> without_drafts(BuildControl& control) const;
+    /// This with the trees of `known` for the meshes that are there.
+    std::shared_ptr<const RenderScene> with_trees(const Accelerator& known) const;
 
     const Scene& scene() const { return *scene_; }
     /// Rays are traced in a space with the axes of the scene whose origin is here: next to the objects where those are far

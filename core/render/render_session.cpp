@@ -1,6 +1,7 @@
 #include "core/render/render_session.h"
 
 #include "core/render/progressive_renderer.h"
+#include "core/render/tree_completion.h"
 
 #include <condition_variable>
 #include <mutex>
@@ -24,6 +25,7 @@ struct Mail {
     std::optional<int> threads;
     std::optional<SamplingOptions> sampling;
     std::optional<Shortcuts> shortcuts;
+    std::optional<std::shared_ptr<const Accelerator>> trees;  ///< From a TreeCompletion.
 };
 
 /// A build under way, and for what.
@@ -57,6 +59,7 @@ double progress(std::uint64_t done, std::uint64_t total) {
 
 struct RenderSession::Impl {
     explicit Impl(const SessionOptions& options) : renderer(options.interactive, options.threads) {
+        renderer.set_drafts(options.interactive && options.drafts);
         renderer.set_sampling(options.sampling);
         thread = std::thread([this] { run(); });
     }
@@ -70,6 +73,10 @@ struct RenderSession::Impl {
     bool receive(bool idle, Mail& received);
     void handle(Mail& received);
     void take(std::shared_ptr<const Scene> scene);
+    void take_trees(const std::shared_ptr<const Accelerator>& trees);
+    void review_drafts();
+    void begin_completion();
+    void end_completion();
     bool render_next();
     void publish(bool flush = false);
     void report(SessionPhase phase);
@@ -84,6 +91,8 @@ struct RenderSession::Impl {
     RenderStatistics statistics;
     std::shared_ptr<const Frame> frame;
     std::shared_ptr<Build> build;
+    std::unique_ptr<TreeCompletion>
+        completion;  ///< While drafts are being replaced. Only the render thread changes it.
     std::function<void()> callback;
     std::atomic<bool> interrupted{
         false};                         ///< There is mail: what can be taken up again later stops at the next chance.
@@ -103,6 +112,7 @@ RenderSession::Impl::~Impl() {
     }
     mail_arrived.notify_all();
     thread.join();
+    completion.reset();
 }
 
 /// Lets `write` add to the mail and wakes the render thread.
@@ -120,7 +130,11 @@ void RenderSession::Impl::send(Write&& write) {
 SessionStatus RenderSession::Impl::current_status() const {
     const std::lock_guard lock(mutex);
     SessionStatus result = status;
-    if (build) result.build_progress = progress(build->control.done, build->control.total);
+    if (build) {
+        result.build_progress = progress(build->control.done, build->control.total);
+    } else if (completion) {
+        result.build_progress = completion->progress();
+    }
     result.pass_progress = progress(paths_done, paths_wanted);
     return result;
 }
@@ -157,11 +171,14 @@ bool RenderSession::Impl::receive(bool idle, Mail& received) {
 }
 
 void RenderSession::Impl::handle(Mail& received) {
+    if (received.trees) take_trees(*received.trees);
     if (received.threads) renderer.set_threads(*received.threads);
     if (received.sampling) renderer.set_sampling(*received.sampling);
     if (received.shortcuts) renderer.set_shortcuts(*received.shortcuts);
     if (received.paused) renderer.set_paused(*received.paused);
+    const bool may_draft = received.scene || received.shortcuts;
     if (received.scene) take(std::move(received.scene));
+    if (may_draft && renderer.has_scene()) review_drafts();
     if (received.restart && renderer.has_scene()) renderer.restart();
     if (received.flush) {
         renderer.set_paused(true);
@@ -182,11 +199,45 @@ void RenderSession::Impl::take(std::shared_ptr<const Scene> scene) {
     status.build_progress = 0;
 }
 
+void RenderSession::Impl::take_trees(const std::shared_ptr<const Accelerator>& trees) {
+    end_completion();
+    if (trees) renderer.take_trees(*trees);
+    renderer.set_drafted(trees && renderer.render_scene()->has_drafts());
+}
+
+/// After trees may have been built: drafts among them are to be replaced, by nothing that no longer suits them.
+void RenderSession::Impl::review_drafts() {
+    if (completion && !completion->suits(*renderer.render_scene())) end_completion();
+    renderer.set_drafted(renderer.render_scene()->has_drafts());
+}
+
+void RenderSession::Impl::begin_completion() {
+    if (!renderer.drafted() || completion) return;
+    auto begun = std::make_unique<TreeCompletion>(
+        renderer.render_scene(), renderer.threads(),
+        [this](std::shared_ptr<const Accelerator> trees) { send([&](Mail& to) { to.trees = std::move(trees); }); });
+    const std::lock_guard lock(mutex);
+    completion = std::move(begun);
+}
+
+void RenderSession::Impl::end_completion() {
+    std::unique_ptr<TreeCompletion> ended;
+    {
+        const std::lock_guard lock(mutex);
+        std::swap(ended, completion);
+    }
+    ended.reset();  // Waits for its thread, which may be sending mail.
+    const std::lock_guard lock(mutex);
+    if (mail) mail->trees.reset();
+}
+
 /// Does the next pass and shows what is worth it; false where nothing is left to do.
 bool RenderSession::Impl::render_next() {
     if (!renderer.has_scene()) return false;
     const Pass pass = renderer.next_pass();
+    if (pass.kind != Pass::Kind::coarse) begin_completion();
     if (pass.kind == Pass::Kind::wait) {
+        if (completion) report(SessionPhase::building);
         std::unique_lock lock(mutex);
         mail_arrived.wait_for(lock, std::chrono::duration<double>(pass.wait_seconds), [&] { return mail || quitting; });
         return true;

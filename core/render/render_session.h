@@ -12,6 +12,8 @@ namespace rayuela {
 struct SessionOptions {
     int threads = 0;          ///< Workers; 0 is one a hardware thread.
     bool interactive = true;  ///< Coarse passes after a restart, and frames published while rendering.
+    bool drafts =
+        true;  ///< Interactive: the first image of a large mesh is traced in the draft of a tree (kDraftTriangles).
     SamplingOptions sampling;
 };
 

@@ -12,6 +12,8 @@ constexpr double kQuietSeconds = 0.08;        ///< Without edits, after which th
 constexpr int kCoarsestDivisor = 16;          ///< Below this a preview shows nothing.
 constexpr double kGuessedPathSeconds = 2e-6;  ///< Before anything was measured.
 constexpr double kHeadlessPassSeconds = 0.25;
+constexpr double kDraftSeconds =
+    1;  ///< After which to ask again whether the trees are there: whoever builds them says so.
 constexpr int kMaxPassSamples = 64;
 
 double path_seconds(const ScheduleState& state) {
@@ -61,6 +63,8 @@ Pass next_pass(const ScheduleState& state) {
     const bool converged = complete && state.unfinished == 0;
     if (sampled || timed_out || converged) return {.kind = Pass::Kind::finished};
     if (state.paused && complete) return {.kind = Pass::Kind::paused};
+    if (state.drafted && (complete || state.preview_done))
+        return {.kind = Pass::Kind::wait, .wait_seconds = kDraftSeconds};
 
     if (state.interactive && complete && state.since_relit < kQuietSeconds) {
         const double end = state.render_seconds + kCoarseSeconds;

@@ -9,6 +9,7 @@ struct ScheduleState {
     int width = 1, height = 1;  ///< Of the film.
     bool interactive = true;    ///< Coarse passes and publications while rendering.
     bool paused = false;
+    bool drafted = false;    ///< The trees are drafts, and better ones are being built.
     int max_samples = 0;     ///< 0: no limit.
     double max_seconds = 0;  ///< 0: no limit.
 
@@ -46,6 +47,7 @@ struct Pass {
 /// What to render next. Pure: the session does as it says.
 /// While edits come that scale the film, passes over it are brief: each edit is shown before the next pass.
 /// After a restart comes a preview, small enough for some 40 edits a second, and once edits have ceased to come the film. The first pass over the film always completes, so that no frame shows holes. Paused, it stops after that.
+/// While trees are drafts the threads are left to those who build better ones: nothing follows the first image.
 Pass next_pass(const ScheduleState& state);
 
 /// Whether the film is worth publishing, after a pass over it: at once when it has become complete or rendering is about

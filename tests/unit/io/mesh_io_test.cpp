@@ -216,6 +216,49 @@ TEST(Ply, BinaryOfBothByteOrders) {
     }
 }
 
+/// Files of floats and triangles are taken as they stand; what differs in anything is read number by number.
+TEST(Ply, PlainFilesAreReadLikeOthers) {
+    const auto file = [](const std::string& type, const std::string& flag, std::vector<float> values,
+                         std::vector<std::int32_t> indices) {
+        std::string bytes =
+            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float nx\nproperty float ny\n"
+            "property float nz\nproperty float x\nproperty float confidence\nproperty float y\n"
+            "property " +
+            type + " z\nelement face 1\nproperty list uchar int vertex_indices\n" + flag + "end_header\n";
+        const auto put = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (type == "double" && i % 7 == 6) {
+                put(double{values[i]});
+            } else {
+                put(values[i]);
+            }
+        }
+        put(static_cast<std::uint8_t>(indices.size()));
+        for (const std::int32_t index : indices) put(index);
+        if (!flag.empty()) put(std::uint8_t{1});
+        return parse_ply(bytes, "a.ply");
+    };
+    const std::vector<float> values{0.6f, 0, 0.8f, 1, 9, 2, 3, 0, 1, 0, 4, 9, 5, 6.5f, 1, 0, 0, -7, 9, 8, 9};
+    const auto plain = file("float", "", values, {2, 0, 1});
+    ASSERT_TRUE(plain) << error_of(plain);
+    EXPECT_EQ((*plain)->positions, (std::vector{Vec3(1, 2, 3), Vec3(4, 5, 6.5f), Vec3(-7, 8, 9)}));
+    EXPECT_EQ((*plain)->normals, (std::vector{Vec3(0.6f, 0, 0.8f), Vec3(0, 1, 0), Vec3(1, 0, 0)}));
+    EXPECT_EQ((*plain)->triangles, std::vector{glm::uvec3(2, 0, 1)});
+    for (const auto& other :
+         {file("double", "", values, {2, 0, 1}), file("float", "property uchar flag\n", values, {2, 0, 1})}) {
+        ASSERT_TRUE(other) << error_of(other);
+        EXPECT_EQ((*other)->positions, (*plain)->positions);
+        EXPECT_EQ((*other)->normals, (*plain)->normals);
+        EXPECT_EQ((*other)->triangles, (*plain)->triangles);
+    }
+    EXPECT_EQ((*file("float", "", values, {2, 0, 1, 2}))->triangles.size(), 2u);
+    EXPECT_THAT(error_of(file("float", "", values, {2, 0, 3})), HasSubstr("face 0: vertex 3 does not exist"));
+    EXPECT_THAT(error_of(file("float", "", values, {2, -1, 1})), HasSubstr("face 0: vertex -1 does not exist"));
+    std::vector<float> broken = values;
+    broken[10] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THAT(error_of(file("float", "", broken, {2, 0, 1})), HasSubstr("vertex 1: is not finite"));
+}
+
 TEST(Ply, ErrorsNameThePlace) {
     const std::string ascii = "ply\nformat ascii 1.0\n";
     const std::string body = "0 0 0\n1 0 0\n0 1 0\n";

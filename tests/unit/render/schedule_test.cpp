@@ -35,6 +35,32 @@ TEST(Schedule, WaitsBehindThePreviewUntilEditsHaveCeased) {
     EXPECT_EQ(next_pass(state).kind, Pass::Kind::full);
 }
 
+TEST(Schedule, NothingFollowsTheFirstImageWhileTreesAreDrafts) {
+    ScheduleState state = state_1280x720();
+    state.drafted = true;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::coarse);
+    state.preview_done = true;
+    state.quiet_seconds = 1;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::wait);
+    state.paused = true;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::wait) << "a preview is not where one stops";
+    state.samples = 1;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::paused);
+    state.paused = false;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::wait);
+    state.max_samples = 1;
+    EXPECT_EQ(next_pass(state).kind, Pass::Kind::finished);
+
+    ScheduleState small = state_1280x720();
+    small.width = small.height = 16;
+    small.drafted = true;
+    EXPECT_EQ(next_pass(small).kind, Pass::Kind::full) << "the film is as quick as a preview";
+    small.samples = 1;
+    EXPECT_EQ(next_pass(small).kind, Pass::Kind::wait);
+    small.drafted = false;
+    EXPECT_EQ(next_pass(small).kind, Pass::Kind::full);
+}
+
 TEST(Schedule, NoPreviewsWhereTheFilmIsAsQuick) {
     ScheduleState state = state_1280x720();
     state.width = state.height = 100;
