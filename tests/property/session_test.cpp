@@ -7,7 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <random>
 #include <thread>
 
@@ -34,12 +36,19 @@ std::shared_ptr<const Frame> render_headless(const Scene& scene, int threads = 2
     return session.wait({});
 }
 
-/// Polls until `condition`, for at most a minute: a machine under load is slow, a hang is a failure.
+/// A minute, or as many as ctest says that sanitizers need.
+std::chrono::minutes patience() {
+    const char* const factor = std::getenv("RAYUELA_PATIENCE");
+    return std::chrono::minutes(factor ? std::max(1, std::atoi(factor)) : 1);
+}
+
+/// Polls until `condition`, for as long as patience lasts: a machine under load is slow, a hang is a failure.
 template <typename Condition>
 ::testing::AssertionResult eventually(Condition&& condition) {
-    const auto deadline = Clock::now() + 60s;
+    const auto deadline = Clock::now() + patience();
     while (!condition()) {
-        if (Clock::now() > deadline) return ::testing::AssertionFailure() << "not within a minute";
+        if (Clock::now() > deadline)
+            return ::testing::AssertionFailure() << "not within " << patience().count() << " minutes";
         std::this_thread::sleep_for(1ms);
     }
     return ::testing::AssertionSuccess();
