@@ -91,11 +91,11 @@ struct RenderSession::Impl {
     RenderStatistics statistics;
     std::shared_ptr<const Frame> frame;
     std::shared_ptr<Build> build;
-    std::unique_ptr<TreeCompletion>
-        completion;  ///< While drafts are being replaced. Only the render thread changes it.
+    /// While drafts are being replaced. Only the render thread changes it.
+    std::unique_ptr<TreeCompletion> completion;
     std::function<void()> callback;
-    std::atomic<bool> interrupted{
-        false};                         ///< There is mail: what can be taken up again later stops at the next chance.
+    /// There is mail: what can be taken up again later stops at the next chance.
+    std::atomic<bool> interrupted{false};
     std::atomic<bool> quitting{false};  ///< So does everything else.
     std::atomic<std::uint64_t> paths_done{0}, paths_wanted{0};
 

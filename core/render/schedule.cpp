@@ -12,8 +12,8 @@ constexpr double kQuietSeconds = 0.08;        ///< Without edits, after which th
 constexpr int kCoarsestDivisor = 16;          ///< Below this a preview shows nothing.
 constexpr double kGuessedPathSeconds = 2e-6;  ///< Before anything was measured.
 constexpr double kHeadlessPassSeconds = 0.25;
-constexpr double kDraftSeconds =
-    1;  ///< After which to ask again whether the trees are there: whoever builds them says so.
+/// After which to ask again whether the trees are there: whoever builds them says so.
+constexpr double kDraftSeconds = 1;
 constexpr int kMaxPassSamples = 64;
 
 double path_seconds(const ScheduleState& state) {
