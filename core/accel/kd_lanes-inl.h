@@ -15,6 +15,7 @@
 
 #include "core/accel/lane_types-inl.h"
 #include "core/accel/ray_block-inl.h"
+#include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -49,19 +50,18 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             origin_[axis][lane] = block.origin[axis][i];
             inverse_[axis][lane] = block.inverse[axis][i];
-            pad_[axis][lane] = block.pad[i] * std::fabs(block.inverse[axis][i]);
         }
+        pad_[lane] = block.pad[i];
         begin_[lane] = block.begin[i];
         end_[lane] = block.end[i];
         limit_[lane] = block.limit[i];
         node_[lane] = apart;
         height_[lane] = static_cast<std::uint32_t>(lane);
         active_ |= LaneBits{1} << lane;
+        // The root waits on the stack.
         if (apart == 0 || block.begin[i] > block.end[i]) return;
-        // As pop has it: the root begins where this ends.
-        stack_[lane] = block.dominant_axis[i] | std::uint64_t{std::bit_cast<std::uint32_t>(block.end[i])} << 32;
+        stack_[lane] = {.begin = block.begin[i], .end = block.end[i], .node = 0, .unused = 0};
         height_[lane] += kLanes;
-        end_[lane] = block.begin[i];
     }
     LaneBits active() const { return active_; }
     /// What begins behind `t` no longer counts for the lane's ray.
@@ -79,8 +79,9 @@ public:
         const Words axis = hn::And(pair.high, hn::Set(dw, KdNode::kAxisMask));
         const AxisChoice choice(axis);
         const auto is_inner = hn::Ne(axis, hn::Set(dw, KdNode::kLeaf));
-        const Floats inverse = choice.of(inverse_), pad = choice.of(pad_),
-                     distance = hn::Sub(plane, choice.of(origin_));
+        const FloatMask inner = hn::RebindMask(d, is_inner);
+        const Floats inverse = choice.of(inverse_), distance = hn::Sub(plane, choice.of(origin_));
+        const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));
         const Floats enter = hn::MulSub(distance, inverse, pad), leave = hn::MulAdd(distance, inverse, pad);
         const Floats begin = hn::Load(d, begin_), end = hn::Load(d, end_);
 
@@ -89,25 +90,29 @@ public:
         const Words empty = hn::ShiftRight<KdNode::kEmptyShift>(pair.high);
         const FloatMask far_empty = hn::RebindMask(d, hn::TestBit(hn::Shr(empty, hn::Xor(backward, one)), one));
         const FloatMask near_empty = hn::RebindMask(d, hn::TestBit(hn::Shr(empty, backward), one));
-        // An empty leaf is entered only where the ray passes nothing else here.
+        // An empty leaf is entered only where the ray passes nothing else here. The way through the other child ends or
+        // begins at the plane all the same: what it does not reach there is not visited.
         const FloatMask beyond = hn::Gt(enter, hn::Min(end, hn::Load(d, limit_))), before = hn::Lt(leave, begin);
         const FloatMask only_far = hn::AndNot(beyond, hn::Or(before, near_empty));
-        const FloatMask only_near = hn::Or(beyond, far_empty);
-        const FloatMask both = hn::AndNot(hn::Or(only_near, only_far), hn::RebindMask(d, is_inner));
+        const FloatMask to_far = hn::And(only_far, inner), to_near = hn::AndNot(only_far, inner);
+        const FloatMask both = hn::AndNot(hn::Or(beyond, far_empty), to_near);
+        const Floats far_begin = hn::Max(enter, begin);
         hn::Store(pair.low, dw, word_);
         hn::Store(pair.high, dw, data_);
         const Words children = hn::ShiftRight<KdNode::kChildrenShift>(pair.high);
         const Words near = hn::Add(children, backward);
         const Words far = hn::Add(children, hn::Xor(backward, one));
 
-        // What is written for the other lanes lies above the top of their stacks.
         const Words height = hn::Load(dw, height_);
-        scatter_pairs({hn::Or(hn::ShiftLeft<2>(far), axis), hn::BitCast(dw, end)}, stack_, height_);
+        // What is written for the other lanes lies above the top of their stacks.
+        store_fours(far_begin, end, hn::BitCast(d, far), end,
+                    [&](std::size_t lane) HWY_ATTR { return &stack_[height_[lane]].begin; });
         const auto pushed = hn::RebindMask(dw, both);
         hn::Store(hn::Add(height, hn::IfThenElseZero(pushed, hn::Set(dw, kLanes))), dw, height_);
-        const Words next = hn::IfThenElse(hn::RebindMask(dw, only_far), far, near);
+        const Words next = hn::IfThenElse(hn::RebindMask(dw, to_far), far, near);
         hn::Store(hn::IfThenElse(is_inner, next, node), dw, node_);
-        hn::Store(hn::IfThenElse(both, hn::Min(leave, end), end), d, end_);
+        hn::Store(hn::IfThenElse(to_far, far_begin, begin), d, begin_);
+        hn::Store(hn::IfThenElse(to_near, hn::Min(leave, end), end), d, end_);
         return hn::CountTrue(dw, is_inner);
     }
 
@@ -148,12 +153,10 @@ public:
             const auto popped = hn::RebindMask(dw, todo);
             height = hn::IfThenElse(popped, hn::Sub(height, hn::Set(dw, kLanes)), height);
             hn::Store(height, dw, height_);
-            const WordPairs entry = gather_pairs(stack_, height_);
-            // The far child begins where the near one ended, less both pads and their rounding.
-            const Floats pad = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(pad_);
-            begin = hn::IfThenElse(todo, hn::NegMulAdd(pad, hn::Set(d, 2.25f), end), begin);
-            end = hn::IfThenElse(todo, hn::BitCast(d, entry.high), end);
-            node = hn::IfThenElse(popped, hn::ShiftRight<2>(entry.low), node);
+            const FourLanes entry = load_fours([&](std::size_t lane) HWY_ATTR { return &stack_[height_[lane]].begin; });
+            begin = hn::IfThenElse(todo, entry.x, begin);
+            end = hn::IfThenElse(todo, entry.y, end);
+            node = hn::IfThenElse(popped, hn::BitCast(dw, entry.z), node);
             todo = hn::And(todo, hn::Gt(begin, limit));
         }
         hn::Store(node, dw, node_);
@@ -162,12 +165,19 @@ public:
     }
 
 private:
+    /// A child still to be visited, and where the ray is in it.
+    struct alignas(16) Entry {
+        float begin, end;
+        float node;  ///< Its index, by its bits.
+        float unused;
+    };
+
     alignas(64) LaneAxes origin_{}, inverse_{};
-    alignas(64) LaneAxes pad_{};  ///< RayBlock::pad along the ray, where it passes planes across each axis.
+    alignas(64) float pad_[kLanes] = {};  ///< RayBlock::pad.
     alignas(64) float begin_[kLanes] = {}, end_[kLanes] = {}, limit_[kLanes] = {};
     alignas(64) std::uint32_t node_[kLanes] = {}, height_[kLanes] = {};
     alignas(64) std::uint32_t word_[kLanes] = {}, data_[kLanes] = {};  ///< Of the nodes at the last step.
-    alignas(64) std::uint64_t stack_[(kKdMaxDepth + 1) * kLanes];
+    alignas(64) Entry stack_[(kKdMaxDepth + 1) * kLanes];
     LaneBits active_ = 0;
 };
 
@@ -224,7 +234,7 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
             active += std::popcount(groups.group[g].active());
         }
         if (active == 0) return;
-        const std::size_t few = static_cast<std::size_t>(active) / 4;
+        const std::size_t few = static_cast<std::size_t>(active) * 3 / 8;
         while (groups.step(tree) > few) {
         }
 

@@ -27,10 +27,6 @@ HWY_INLINE WordPairs gather_pairs(const std::uint64_t* base, const std::uint32_t
     return {hn::Set(dw, static_cast<std::uint32_t>(pair)), hn::Set(dw, static_cast<std::uint32_t>(pair >> 32))};
 }
 
-HWY_INLINE void scatter_pairs(const WordPairs& pairs, std::uint64_t* base, const std::uint32_t* index) {
-    base[*index] = hn::GetLane(pairs.low) | std::uint64_t{hn::GetLane(pairs.high)} << 32;
-}
-
 #else
 
 /// base[index[k]] in lane k. A load and an insertion a lane: instructions that gather take twice as long on Zen 4.
@@ -52,25 +48,6 @@ HWY_INLINE WordPairs gather_pairs(const std::uint64_t* base, const std::uint32_t
     const auto lower = hn::BitCast(dw, load_each(dp, base, index));
     const auto upper = hn::BitCast(dw, load_each(dp, base, index + hn::MaxLanes(dp)));
     return {hn::ConcatEven(dw, upper, lower), hn::ConcatOdd(dw, upper, lower)};
-}
-
-/// Lanes of blocks of two, the next block four lanes on.
-template <typename Tag>
-HWY_INLINE void store_each(Tag, hn::Vec<Tag> pairs, std::uint64_t* base, const std::uint32_t* index) {
-    const hn::Half<Tag> half;
-    if constexpr (hn::MaxLanes(Tag()) == 2) {
-        hn::Store(hn::LowerHalf(half, pairs), half, base + index[0]);
-        hn::Store(hn::UpperHalf(half, pairs), half, base + index[1]);
-    } else {
-        store_each(half, hn::LowerHalf(half, pairs), base, index);
-        store_each(half, hn::UpperHalf(half, pairs), base, index + 2 * hn::MaxLanes(half));
-    }
-}
-
-HWY_INLINE void scatter_pairs(const WordPairs& pairs, std::uint64_t* base, const std::uint32_t* index) {
-    const PairTag dp;
-    store_each(dp, hn::BitCast(dp, hn::InterleaveLower(WordTag(), pairs.low, pairs.high)), base, index);
-    store_each(dp, hn::BitCast(dp, hn::InterleaveUpper(WordTag(), pairs.low, pairs.high)), base, index + 2);
 }
 
 #endif

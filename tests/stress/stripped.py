@@ -26,12 +26,9 @@ from stripped_features import FEATURES
 LANES, PACKETS, TRIANGLES = "core/accel/kd_lanes-inl.h", "core/accel/kd_packets-inl.h", "core/accel/triangle_tests-inl.h"
 FEW, SPHERES = "core/accel/few_objects-inl.h", "core/accel/sphere_tests-inl.h"
 PADS = [
-    (LANES, "pad_[axis][lane] = block.pad[i] * std::fabs(block.inverse[axis][i]);", ""),
-    (LANES, "inverse = choice.of(inverse_), pad = choice.of(pad_),", "inverse = choice.of(inverse_),"),
+    (LANES, "const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));", ""),
     (LANES, "enter = hn::MulSub(distance, inverse, pad), leave = hn::MulAdd(distance, inverse, pad);",
      "enter = hn::Mul(distance, inverse), leave = enter;"),
-    (LANES, "const Floats pad = AxisChoice(hn::And(entry.low, hn::Set(dw, 3))).of(pad_);", ""),
-    (LANES, "hn::NegMulAdd(pad, hn::Set(d, 2.25f), end)", "end"),
     (PACKETS, "enter = middle - overlap, leave = middle + overlap;", "enter = middle, leave = middle;\n(void)overlap;"),
     (TRIANGLES, "const Floats slack = hn::MulAdd(ray.slack.slope, extent, ray.slack.offset);",
      "const Floats slack = hn::Zero(FloatTag());"),
