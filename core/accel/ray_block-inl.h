@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "core/accel/lane_types-inl.h"
@@ -263,7 +264,9 @@ private:
             hn::StoreU(inverse, df, block.inverse[axis] + i);
         }
         hn::StoreU(hn::IfThenElse(usable, begin, hn::Set(df, 1)), df, block.begin + i);
-        hn::StoreU(hn::IfThenElseZero(usable, end), df, block.end + i);
+        // What has left the bounds before any float is not closed: it may meet what stands apart.
+        const HalfFloats last = hn::Max(end, hn::Set(df, std::numeric_limits<float>::lowest()));
+        hn::StoreU(hn::IfThenElseZero(usable, last), df, block.end + i);
         hn::StoreU(pad, df, block.pad + i);
         hn::StoreU(scale, df, block.t_scale + i);
     }

@@ -145,6 +145,28 @@ TEST(KdVersusList, LargeTrianglesOfAMesh) {
     use_instruction_set(instruction_sets().front());
 }
 
+/// What a mesh's tree holds lies behind the ray, farther than any float.
+TEST(KdVersusList, ALargeTriangleAheadOfARayThatHasLeftTheTree) {
+    const MeshPtr ball = make_ball(12, 1, Vec3(0), 0.2f, 3);
+    std::vector<Vec3> positions = ball->positions;
+    std::vector<glm::uvec3> triangles = ball->triangles;
+    triangles.push_back(static_cast<std::uint32_t>(positions.size()) + glm::uvec3(0, 1, 2));
+    positions.insert(positions.end(), {Vec3(-4.1903353e18f, -6.72909388e32f, -0.47637853f),
+                                       Vec3(6.32640347e-19f, 7.98971314e-07f, -4.15667896e10f),
+                                       Vec3(1.56955338e37f, 0.514992893f, -1.14992277e38f)});
+    const std::vector<GeometryInstance> instances{{make_mesh(std::move(positions), std::move(triangles)), {}}};
+    const auto built = build(instances, {});
+    ASSERT_EQ(dynamic_cast<const KdAccelerator&>(*built).mesh_tree(0)->tree.nodes.back().count(), 1u);
+    const Ray ray{.origin = Vec3(7.8477669e36f, 0.257496446f, -5.74961387e37f),
+                  .direction = Vec3(-0.0778928995f, 0.991512358f, -0.10409674f)};
+    ASSERT_TRUE(intersect(*scalar_list(instances), ray).valid());
+    for (const std::string_view set : instruction_sets()) {
+        use_instruction_set(set);
+        expect_same_as_list(instances, {ray}, {1, 16});
+    }
+    use_instruction_set(instruction_sets().front());
+}
+
 TEST(KdVersusList, LargeObjectsBesideACrowd) {
     auto instances = make_scene(9, 300, 30);
     Mat3 flattened(1);
