@@ -2,13 +2,13 @@
 #include "app/bench_convergence_plot.h"
 #include "app/bench_convergence_report.h"
 #include "app/progress_bar.h"
+#include "app/write_text.h"
 #include "ui/assets_path.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace rayuela {
@@ -89,14 +89,6 @@ Result<std::vector<ConvergencePlan>> make_plans(const ConvergenceOptions& option
         plans.push_back(std::move(plan));
     }
     return plans;
-}
-
-Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
-    if (file.empty()) return {};
-    std::ofstream stream(file);
-    stream << text;
-    if (!stream.flush()) return fail(file.string(), "", "cannot be written");
-    return {};
 }
 
 Result<void> run_convergence(const ConvergenceOptions& options) {

@@ -5,6 +5,7 @@
 #include "app/median_ratio.h"
 #include "app/subcommands.h"
 #include "app/text_table.h"
+#include "app/write_text.h"
 #include "core/io/mesh_io.h"
 #include "core/render/render_session.h"
 
@@ -12,7 +13,6 @@
 #include <unistd.h>
 
 #include <condition_variable>
-#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -169,11 +169,7 @@ Result<void> run_first_image(const FirstImageOptions& options) {
         if (auto done = measure_file("land " + size, land.path()); !done) return done;
     }
     fmt::print("{}", table.text());
-    if (options.json.empty()) return {};
-    std::ofstream stream(options.json);
-    stream << figures.dump(2) << '\n';
-    if (!stream.flush()) return fail(options.json.string(), "", "cannot be written");
-    return {};
+    return write_text(options.json, figures.dump(2) + '\n');
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include "app/bench_rays.h"
 #include "app/count_text.h"
 #include "app/isa_option.h"
+#include "app/write_text.h"
 
 #include <algorithm>
-#include <fstream>
 
 namespace rayuela {
 
@@ -42,11 +42,7 @@ Result<nlohmann::json> run_meshes(const RaysOptions& options) {
 Result<void> run_rays(const RaysOptions& options) {
     const auto all = options.sizes.empty() ? run_meshes(options) : bench_sizes(options);
     if (!all) return tl::unexpected(all.error());
-    if (options.json.empty()) return {};
-    std::ofstream file(options.json);
-    file << all->dump(2) << '\n';
-    if (!file) return fail(options.json.string(), "", "the file could not be written");
-    return {};
+    return write_text(options.json, all->dump(2) + '\n');
 }
 
 /// The name of a made mesh or an existing file.

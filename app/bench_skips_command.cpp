@@ -2,11 +2,11 @@
 #include "app/skip_gains.h"
 #include "app/subcommands.h"
 #include "app/text_table.h"
+#include "app/write_text.h"
 #include "ui/assets_path.h"
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace rayuela {
@@ -55,11 +55,7 @@ Result<void> run_skips(const SkipsOptions& options) {
         print(file.stem().stem().string(), *gains);
         all.push_back(describe(file.stem().stem().string(), *gains));
     }
-    if (options.json.empty()) return {};
-    std::ofstream stream(options.json);
-    stream << all.dump(2) << '\n';
-    if (!stream.flush()) return fail(options.json.string(), "", "cannot be written");
-    return {};
+    return write_text(options.json, all.dump(2) + '\n');
 }
 
 }  // namespace

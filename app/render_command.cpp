@@ -1,5 +1,6 @@
 #include "app/progress_bar.h"
 #include "app/subcommands.h"
+#include "app/write_text.h"
 #include "core/io/image_io.h"
 #include "core/render/render_scene.h"
 #include "core/render/render_session.h"
@@ -9,7 +10,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -74,10 +74,7 @@ Result<void> write_stats(const std::filesystem::path& file, const RenderStatisti
                                           {"clamp_removed", statistics.clamp_loss.removed},
                                           {"clamp_removed_share", statistics.clamp_loss.share},
                                           {"threads", statistics.threads}};
-    std::ofstream stream(file);
-    stream << stats.dump(2) << '\n';
-    if (!stream.flush()) return fail(file.string(), "", "cannot be written");
-    return {};
+    return write_text(file, stats.dump(2) + '\n');
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "core/scene/scene_edit.h"
 #include "tests/render_testing.h"
+#include "tests/support/eventually.h"
 #include "tests/support/random_edit.h"
 
 #include <gmock/gmock.h>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <random>
 #include <thread>
 
@@ -17,6 +17,7 @@ namespace rayuela {
 namespace {
 
 using namespace rayuela::testing;
+using test::eventually;
 using namespace std::chrono_literals;
 
 using Clock = std::chrono::steady_clock;
@@ -34,24 +35,6 @@ std::shared_ptr<const Frame> render_headless(const Scene& scene, int threads = 2
     RenderSession session({.threads = threads, .interactive = false});
     session.submit(share(scene));
     return session.wait({});
-}
-
-/// A minute, or as many as ctest says that sanitizers need.
-std::chrono::minutes patience() {
-    const char* const factor = std::getenv("RAYUELA_PATIENCE");
-    return std::chrono::minutes(factor ? std::max(1, std::atoi(factor)) : 1);
-}
-
-/// Polls until `condition`, for as long as patience lasts: a machine under load is slow, a hang is a failure.
-template <typename Condition>
-::testing::AssertionResult eventually(Condition&& condition) {
-    const auto deadline = Clock::now() + patience();
-    while (!condition()) {
-        if (Clock::now() > deadline)
-            return ::testing::AssertionFailure() << "not within " << patience().count() << " minutes";
-        std::this_thread::sleep_for(1ms);
-    }
-    return ::testing::AssertionSuccess();
 }
 
 TEST(Session, HeadlessRendersToTheSampleLimit) {

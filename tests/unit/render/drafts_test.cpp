@@ -2,6 +2,7 @@
 #include "core/render/render_session.h"
 #include "core/scene/scene_edit.h"
 #include "tests/render_testing.h"
+#include "tests/support/eventually.h"
 #include "tests/support/hits.h"
 
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@ namespace rayuela {
 namespace {
 
 using namespace rayuela::testing;
+using test::eventually;
 using namespace std::chrono_literals;
 
 std::shared_ptr<const Scene> share(Scene scene) {
@@ -67,16 +69,6 @@ std::vector<Ray> rays_around(int count) {
     std::vector<Ray> rays;
     for (int i = 0; i < count; ++i) rays.push_back({.origin = point(), .direction = point()});
     return rays;
-}
-
-template <typename Condition>
-bool eventually(const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + 60s;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(1ms);
-    }
-    return true;
 }
 
 TEST(Drafts, BecomeTheTreesThatWereAskedFor) {
