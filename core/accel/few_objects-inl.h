@@ -7,6 +7,7 @@
 #endif
 
 #include "core/accel/object_lanes-inl.h"
+#include "core/accel/pair_tests-inl.h"
 #include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -64,19 +65,29 @@ public:
     /// `ids`: at most kBlockRays, kLanes more may be read. Meshes are noted down for later, all other shapes tested.
     HWY_INLINE void trace(std::span<const std::uint32_t> ids) {
         sort_by_axis(ids);
-        for (std::uint32_t axis = 0; axis < 3; ++axis) {
-            each_group(axis, [&](const WorldRays& rays) HWY_ATTR {
-                if (leaf_.triangles > 0) add_triangles(rays, axis);
-                if (leaf_.spheres > 0) add_spheres(rays);
-            });
-            decide_triangles(axis);
-            decide_spheres();
-            if (leaf_.others > 0) each_group(axis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });
-        }
+        trace_axis<0>();
+        trace_axis<1>();
+        trace_axis<2>();
     }
 
 private:
-    static constexpr std::size_t kRoom = 1024;  ///< For candidates.
+    static constexpr std::size_t kRoom = 1024;     ///< For candidates.
+    static constexpr std::size_t kPairs = 1 << 7;  ///< Tested with all rays before the next, to stay in the cache.
+
+    template <std::uint32_t kAxis>
+    void trace_axis() {
+        const std::size_t pairs = scene_.leaves->apart_pairs.pairs.size();
+        for (std::size_t first = 0; first < pairs; first += kPairs) {
+            each_group(kAxis, [&](const WorldRays& rays)
+                                  HWY_ATTR { add_triangles<kAxis>(rays, first, std::min(pairs, first + kPairs)); });
+            decide_triangles<kAxis>(first);
+        }
+        if (leaf_.spheres > 0) {
+            each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { add_spheres(rays); });
+            decide_spheres();
+        }
+        if (leaf_.others > 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });
+    }
 
     HWY_INLINE void sort_by_axis(std::span<const std::uint32_t> ids) {
         const FloatTag d;
@@ -109,16 +120,14 @@ private:
         for (std::size_t i = 0; i < n; i += kLanes) each(WorldRays(rays_, hits_, ids + i, n - i, reach_));
     }
 
-    const float* runs() const { return scene_.leaves->triangle_runs.data(); }
-
-    HWY_INLINE void add_triangles(const WorldRays& rays, std::uint32_t dominant_axis) {
+    /// Pairs first to end.
+    template <std::uint32_t kAxis>
+    HWY_INLINE void add_triangles(const WorldRays& rays, std::size_t first, std::size_t end) {
         const FloatTag d;
-        const WordTag dw;
-        const Turn turn(dominant_axis);
-        const auto [x, y, z] = turn;
+        const auto [x, y, z] = Turn(kAxis);
         const Floats depth = rays.direction[z];
         const Floats from = depth * rays.t_min, to = depth * rays.t_end, rounding = hn::Set(d, 4 * kUnitRoundoff);
-        const Floats begin = hn::Min(from, to), end = hn::Max(from, to);
+        const Floats z_begin = hn::Min(from, to), z_end = hn::Max(from, to);
         const Floats least = hn::Max(hn::Set(d, 1), hn::Abs(depth)) * hn::Set(d, kLeastDepthPad);
         const FilterRays filter{rays.origin[x],
                                 rays.origin[y],
@@ -126,34 +135,70 @@ private:
                                 rays.direction[x] / depth,
                                 rays.direction[y] / depth,
                                 FilterSlack::of(rays.pad),
-                                begin - (least + rounding * hn::Abs(begin)),
-                                end + (least + rounding * hn::Abs(end))};
-        const std::size_t n = leaf_.triangles;
-        const TurnedRuns turned(runs(), n, turn);
-        for (std::size_t i = 0; i < n; ++i) {
-            const FloatMask hit = hn::And(may_hit(filter, turned.triangle(i)), rays.usable);
-            hn::StoreU(hn::Compress(rays.id, hn::RebindMask(dw, hit)), dw, ray_ + count_);
-            hn::StoreU(hn::Set(dw, static_cast<std::uint32_t>(i)), dw, triangle_ + count_);
-            count_ += hn::CountTrue(d, hit);
-            if (count_ > kRoom - kLanes) decide_triangles(dominant_axis);
-        }
+                                z_begin - (least + rounding * hn::Abs(z_begin)),
+                                z_end + (least + rounding * hn::Abs(z_end))};
+        const PairFilter<kAxis> pairs(filter, rays.usable);
+        const std::size_t of_two = std::clamp(scene_.leaves->apart_pairs.of_two, first, end);
+        test_pairs<kAxis, true>(pairs, rays.id, first, first, of_two);
+        test_pairs<kAxis, false>(pairs, rays.id, first, of_two, end);
     }
 
-    HWY_INLINE void decide_triangles(std::uint32_t dominant_axis) {
+    /// Pairs begin to end, as candidates counted from `first`.
+    template <std::uint32_t kAxis, bool kTwo>
+    HWY_INLINE void test_pairs(const PairFilter<kAxis>& filter, Words ids, std::size_t first, std::size_t begin,
+                               std::size_t end) {
+        const FloatTag d;
+        const WordTag dw;
+        const TrianglePair* const pairs = scene_.leaves->apart_pairs.pairs.data();
+        std::size_t count = count_;
+        for (std::size_t i = begin; i < end; ++i) {
+            filter.template test<kTwo>(pairs[i], [&](FloatMask hit, std::uint32_t half) HWY_ATTR {
+                const std::uint32_t triangle = 2 * static_cast<std::uint32_t>(i - first) + half;
+                const Words candidates = ids + hn::Set(dw, candidate(0, triangle));
+                hn::StoreU(hn::Compress(candidates, hn::RebindMask(dw, hit)), dw, candidate_ + count);
+                count += hn::CountTrue(d, hit);
+            });
+            if (count > kRoom - 2 * kLanes) {
+                count_ = count;
+                decide_triangles<kAxis>(first);
+                count = 0;
+            }
+        }
+        count_ = count;
+    }
+
+    /// A ray of the block, and a triangle of the pairs that are tested: 2 a pair.
+    static constexpr std::uint32_t candidate(std::uint32_t ray, std::uint32_t triangle) {
+        static_assert((kBlockRays & (kBlockRays - 1)) == 0);
+        return triangle * kBlockRays + ray;
+    }
+    static constexpr std::uint32_t ray_of(std::uint32_t candidate) { return candidate % kBlockRays; }
+    static constexpr std::uint32_t triangle_of(std::uint32_t candidate) { return candidate / kBlockRays; }
+
+    /// Pairs are counted from `first`.
+    template <std::uint32_t kAxis>
+    void decide_triangles(std::size_t first) {
         const DoubleTag dd;
         const hn::Rebind<float, DoubleTag> df;
         using HalfFloats = hn::Vec<decltype(df)>;
-        const auto [x, y, z] = Turn(dominant_axis);
+        const auto [x, y, z] = Turn(kAxis);
+        const std::uint32_t* const names = scene_.leaves->apart_pairs.names.data() + 2 * first;
+        // Behind the last candidate are some whose results are dropped.
+        hn::StoreU(hn::Zero(WordTag()), WordTag(), candidate_ + count_);
         for (std::size_t i = 0; i < count_; i += kDoubles) {
-            // Past the last candidate lie earlier ones or zeros, whose results are dropped.
+            std::uint32_t ray[kDoubles], triangle[kDoubles];
+            for (std::size_t lane = 0; lane < kDoubles; ++lane) {
+                ray[lane] = ray_of(candidate_[i + lane]);
+                triangle[lane] = names[triangle_of(candidate_[i + lane])];
+            }
             HalfFloats origin[4], direction[4], corners[3][4];
             load_turned(
-                df, [&](std::size_t lane) HWY_ATTR { return &rays_[ray_[i + lane]].origin.x; }, origin);
+                df, [&](std::size_t lane) HWY_ATTR { return &rays_[ray[lane]].origin.x; }, origin);
             load_turned(
-                df, [&](std::size_t lane) HWY_ATTR { return &rays_[ray_[i + lane]].direction.x; }, direction);
+                df, [&](std::size_t lane) HWY_ATTR { return &rays_[ray[lane]].direction.x; }, direction);
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 const auto at = [&](std::size_t lane) HWY_ATTR {
-                    return scene_.leaves->apart_corners[triangle_[i + lane]].data() + 4 * corner;
+                    return scene_.leaves->apart_corners[triangle[lane]].data() + 4 * corner;
                 };
                 load_turned(df, at, corners[corner]);
             }
@@ -176,8 +221,7 @@ private:
             const auto hit = hn::And(hits.hit, hn::FirstN(dd, count_ - i));
             for (LaneBits bits = bits_of(dd, hit) & bits_of(df, in_range); bits != 0; bits &= bits - 1) {
                 const std::size_t k = first_lane(bits);
-                keep_triangle(scene_.leaves->triangles[triangle_[i + k]], triangle_hit(ts[k], us[k], vs[k]),
-                              hits_[ray_[i + k]]);
+                keep_triangle(scene_.leaves->triangles[triangle[k]], triangle_hit(ts[k], us[k], vs[k]), hits_[ray[k]]);
             }
         }
         count_ = 0;
@@ -292,7 +336,7 @@ private:
     float reach_;
     std::uint32_t ids_[3][kBlockRays + kLanes];  ///< Rays by dominant axis.
     std::size_t size_[3] = {};
-    std::uint32_t ray_[kRoom + kLanes] = {}, triangle_[kRoom + kLanes] = {};  ///< Candidates.
+    std::uint32_t candidate_[kRoom + kLanes];
     std::size_t count_ = 0;
     SphereCandidates spheres_;
 };

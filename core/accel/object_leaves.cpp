@@ -31,7 +31,8 @@ public:
     }
 
     /// Of the triangles that were written last.
-    std::vector<std::array<float, 12>> corners() const {
+    std::span<const TriangleCorners> corners() const { return corners_; }
+    std::vector<std::array<float, 12>> padded_corners() const {
         std::vector<std::array<float, 12>> result;
         for (const auto& [a, b, c] : corners_) result.push_back({a.x, a.y, a.z, 0, b.x, b.y, b.z, 0, c.x, c.y, c.z, 0});
         return result;
@@ -104,7 +105,7 @@ private:
 std::uint64_t ObjectLeaves::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return bytes(leaves) + bytes(triangle_runs) + bytes(triangles) + bytes(apart_corners) + bytes(sphere_runs) +
-           bytes(spheres) + bytes(others) + bytes(other_bounds) + bytes(exact_spheres);
+           bytes(spheres) + bytes(others) + bytes(other_bounds) + bytes(exact_spheres) + apart_pairs.memory_bytes();
 }
 
 ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, std::span<const Bounds3> bounds,
@@ -112,7 +113,8 @@ ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, std::span
     ObjectLeaves result;
     LeafWriter writer(objects, bounds, result);
     result.apart = writer.write(apart);
-    result.apart_corners = writer.corners();
+    result.apart_corners = writer.padded_corners();
+    result.apart_pairs = pair_triangles(writer.corners());
     if (tree) result.leaves.resize(tree->references.size());
     for (const KdNode& node : tree ? std::span(tree->nodes) : std::span<const KdNode>()) {
         if (!node.is_leaf() || node.count() == 0) continue;

@@ -2,6 +2,7 @@
 
 #include "core/accel/kd_tree.h"
 #include "core/accel/traced_object.h"
+#include "core/accel/triangle_pairs.h"
 
 #include <array>
 #include <span>
@@ -32,6 +33,7 @@ struct ObjectLeaves {
     std::vector<ObjectTriangle> triangles;
     /// Of those apart: three corners, each with a float that says nothing.
     std::vector<std::array<float, 12>> apart_corners;
+    TrianglePairs apart_pairs;           ///< Of the same triangles.
     std::vector<float> sphere_runs;      ///< For a leaf of n spheres: n times x, n times y, z and radius.
     std::vector<std::uint32_t> spheres;  ///< Objects.
     std::vector<std::uint32_t> others;   ///< Objects of all other shapes, meshes among them.

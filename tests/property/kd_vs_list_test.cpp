@@ -188,6 +188,27 @@ TEST(KdVersusList, LargeObjectsBesideACrowd) {
 }
 
 /// Everything on the lattice: rays run within faces, along edges and through vertices.
+/// The kernels test such triangles in pairs.
+TEST(KdVersusList, TrianglesOfTheirOwnThatShareEdges) {
+    for (const int rings : {4, 12}) {
+        for (const float scale : {1.0f, 0x1p100f, 0x1p-120f}) {
+            const MeshPtr ball = make_ball(rings, scale, scale * Vec3(0.1f, 0, 0), 0.2f, 31);
+            std::vector<GeometryInstance> instances;
+            for (const glm::uvec3& t : ball->triangles)
+                instances.push_back({Triangle{{ball->positions[t.x], ball->positions[t.y], ball->positions[t.z]}}, {}});
+            std::vector<Ray> rays = make_rays(instances, 2000, 32);
+            for (const Ray& ray : bundles(make_rays(instances, 60, 33), 34)) rays.push_back(ray);
+            const Vec3 eye = scale * Vec3(3, 2, 1);
+            for (const Vec3& corner : ball->positions) rays.push_back({eye, 0, corner - eye, 2});
+            for (const std::string_view set : instruction_sets()) {
+                use_instruction_set(set);
+                expect_same_as_list(instances, rays, {1, 16});
+            }
+            use_instruction_set(instruction_sets().front());
+        }
+    }
+}
+
 TEST(KdVersusList, LatticeRaysThroughLatticeGeometry) {
     std::vector<GeometryInstance> instances{{make_grid(16, 0), {}}, {make_grid(8, 0), {Mat3(1), Vec3(0, 0.5f, 0)}}};
     for (int i = -2; i < 2; ++i) {
