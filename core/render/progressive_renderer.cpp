@@ -240,6 +240,7 @@ RenderStatistics ProgressiveRenderer::statistics(SessionPhase phase) const {
             .lamp_paths = counts_.lamp_paths,
             .environment_lookups = counts_.environment_lookups,
             .textured_hits = counts_.textured_hits,
+            .passing_rays = counts_.passing_rays,
             .rejected = film_->film().rejected(),
             .render_seconds = render_seconds_,
             .samples_per_second = rate(counts_.paths),

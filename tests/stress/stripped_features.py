@@ -56,7 +56,7 @@ LENSES = [
     (CAMERA, "    if (lens_radius_ == 0) {\n        ray.origin = origin_;", "    if (true) {\n        ray.origin = origin_;"),
 ]
 SKIES = [
-    (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) continue;", "if (true) continue;"),
+    (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) return;", "if (true) return;"),
 ]
 PANORAMAS = [
     (SKY, "    if (image_) return scale_ * look_up(*image_, image_position(w));\n", ""),
