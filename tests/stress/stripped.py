@@ -8,9 +8,12 @@ pads: without the pads of planes, the slack of filters and the care with cancell
     Embree without its robust flag: over the examples they cost at most 3%. Decisions stay in double.
 
 Usage: tests/stress/stripped.py features|pads [ROUNDS [FEATURE...]]
-       tests/stress/stripped.py check     only whether what is to be taken out is there
+       tests/stress/stripped.py build [FEATURE...]               only the programs that `features` compares
+       tests/stress/stripped.py measure [ROUNDS [FEATURE...]]    compares them, for when the machine is quiet
+       tests/stress/stripped.py check                            only whether what is to be taken out is there
 """
 
+import filecmp
 import json
 import math
 import pathlib
@@ -50,13 +53,18 @@ MOST_FOR_FEATURES, MOST_FOR_PADS = 1.02, 1.03
 
 root = pathlib.Path(__file__).resolve().parents[2]
 folder = root / "build" / "stripped"
-source = folder / "whole" / "source"
+source, whole = folder / "whole" / "source", folder / "whole" / "build"
 
 
 def copy_sources():
+    """What is the same stays as old as it is, so that it is not compiled again."""
+    def copy(here, there):
+        if not pathlib.Path(there).exists() or not filecmp.cmp(here, there, shallow=False):
+            shutil.copyfile(here, there)
+
     for part in ("app", "assets", "cmake", "core", "shaders", "ui"):
-        shutil.copytree(root / part, source / part, dirs_exist_ok=True)
-    shutil.copy2(root / "CMakeLists.txt", source)
+        shutil.copytree(root / part, source / part, copy_function=copy, dirs_exist_ok=True)
+    copy(root / "CMakeLists.txt", source / "CMakeLists.txt")
     # Not downloaded again.
     deps = root / "build" / "deps"
     if deps.exists() and not (source / "build" / "deps").exists():
@@ -75,18 +83,36 @@ def replaced(replacements):
     return texts
 
 
-def build(name, replacements):
-    """The program with each old replaced by the new if `replacements`, else as it is. Copies it to `name`."""
+def build(name, replacements=()):
+    """The program with each old replaced by the new, as `name`; the whole one if there are none, which has to be the first. Of
+    the others only what is touched in core is compiled; the rest of the program does not look into it."""
     for file, text in replaced(replacements).items():
         if (source / file).read_text() != text:
             (source / file).write_text(text)
     with open(folder / f"{name}.log", "w") as log:
-        for command in (["cmake", "-S", source, "-B", folder / "whole" / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                         "-DCMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG -Wno-error", "-DBUILD_TESTING=OFF"],
-                        ["cmake", "--build", folder / "whole" / "build", "--target", "rayuela"]):
-            if subprocess.run(command, stdout=log, stderr=log).returncode:
+        def run(command):
+            if subprocess.run(command, stdout=log, stderr=log, cwd=whole, shell=isinstance(command, str)).returncode:
                 sys.exit(f"the build failed: {log.name}")
-    return shutil.copy2(folder / "whole" / "build" / "rayuela", folder / name)
+
+        if not replacements:
+            run(["cmake", "-S", source, "-B", whole, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                 "-DCMAKE_CXX_FLAGS_RELEASE=-O3 -DNDEBUG -Wno-error", "-DBUILD_TESTING=OFF"])
+            run(["ninja", "rayuela"])
+        commands = subprocess.run(["ninja", "-t", "commands", "rayuela"], cwd=whole, check=True, capture_output=True, text=True)
+        link = commands.stdout.splitlines()[-1]
+        run(["ninja", *(f"librayuela_{part}.a" for part in re.findall(r"librayuela_(\w+)\.a", link) if (root / "core" / part).is_dir())])
+        run(link.replace(" -o rayuela ", f" -o {folder / name} "))
+    return folder / name
+
+
+def program_without(feature):
+    return folder / feature.replace(" ", "_")
+
+
+def build_features(names):
+    build("with_all")
+    for name in names:
+        build(program_without(name).name, FEATURES[name][0])
 
 
 def render(command, program, scene, samples, *options):
@@ -125,7 +151,7 @@ def ratios_of_time(with_all, without, scene, rounds):
 
 
 def measure_pads(rounds):
-    with_all, without = build("with_all", []), build("without", PADS)
+    with_all, without = build("with_all"), build("without", PADS)
     medians = []
     for scene in PADS_SCENES:
         ratios = ratios_of_time(with_all, without, scene, rounds)
@@ -137,13 +163,12 @@ def measure_pads(rounds):
 
 
 def measure_features(rounds, names):
-    with_all = build("with_all", [])
+    with_all = folder / "with_all"
     print("| without | scene | time | 95% interval | instructions |\n|---|---|---|---|---|", flush=True)
     most = 0
     for name in names:
-        replacements, scenes = FEATURES[name]
-        without = build(name.replace(" ", "_"), replacements)
-        for scene in scenes:
+        without = program_without(name)
+        for scene in FEATURES[name][1]:
             ratios = ratios_of_time(with_all, without, scene, rounds)
             images = (pathlib.Path(f"{program}.pfm").read_bytes() for program in (with_all, without))
             assert len(set(images)) == 1, f"{scene} without {name}: the images differ"
@@ -156,18 +181,23 @@ def measure_features(rounds, names):
 
 
 def main():
-    if sys.argv[1:] == ["check"]:
+    task, arguments = (sys.argv[1], sys.argv[2:]) if len(sys.argv) > 1 else ("", [])
+    if task == "check":
         replaced(PADS)
         for replacements, _ in FEATURES.values():
             replaced(replacements)
         return
-    if len(sys.argv) < 2 or sys.argv[1] not in ("features", "pads"):
+    if task not in ("build", "measure", "features", "pads"):
         sys.exit(__doc__)
-    rounds = int(sys.argv[2]) if len(sys.argv) > 2 else 21
-    source.mkdir(parents=True, exist_ok=True)
-    copy_sources()
-    is_cheap = measure_pads(rounds) if sys.argv[1] == "pads" else measure_features(rounds, sys.argv[3:] or FEATURES)
-    sys.exit(not is_cheap)
+    rounds = int(arguments.pop(0)) if task != "build" and arguments else 21
+    names = arguments or list(FEATURES)
+    if task != "measure":
+        whole.mkdir(parents=True, exist_ok=True)
+        copy_sources()
+    if task in ("build", "features"):
+        build_features(names)
+    if task != "build":
+        sys.exit(not (measure_pads(rounds) if task == "pads" else measure_features(rounds, names)))
 
 
 main()
