@@ -3,6 +3,7 @@
 #include "core/math/float_error.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rayuela {
 

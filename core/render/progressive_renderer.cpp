@@ -182,7 +182,9 @@ void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& canc
     const double seconds = seconds_since(start);
     render_seconds_ += seconds;
     counts_ += traced;
-    if (traced.paths >= kMeasurablePaths) seconds_per_path_ = seconds / static_cast<double>(traced.paths);
+    // A brief pass may hold more of a round of lamp paths than goes with its camera paths.
+    if (pass.kind != Pass::Kind::brief && traced.paths >= kMeasurablePaths)
+        seconds_per_path_ = seconds / static_cast<double>(traced.paths);
     if (!coarse) {
         film_unpublished_ |= traced.paths > 0;
     } else if (target.samples() == samples) {
