@@ -21,7 +21,7 @@ AccelStats& AccelStats::operator+=(const AccelStats& other) {
 
 std::shared_ptr<const Accelerator> Accelerator::build(std::vector<GeometryInstance> instances,
                                                       const AccelSettings& settings, const Accelerator* previous,
-                                                      BuildControl& control) {
+                                                      BuildControl& control, const Accelerator* better) {
     if (control.cancelled) return nullptr;
     if (settings.kind == AcceleratorKind::list) {
         AccelSettings of_list = settings;
@@ -32,7 +32,8 @@ std::shared_ptr<const Accelerator> Accelerator::build(std::vector<GeometryInstan
         control.done += list->stats().primitives;
         return list;
     }
-    return KdAccelerator::build(std::move(instances), settings, dynamic_cast<const KdAccelerator*>(previous), control);
+    return KdAccelerator::build(std::move(instances), settings, dynamic_cast<const KdAccelerator*>(previous),
+                                dynamic_cast<const KdAccelerator*>(better), control);
 }
 
 }  // namespace rayuela

@@ -56,10 +56,11 @@ public:
     virtual ~Accelerator() = default;
 
     /// Builds in parallel on the calling thread's task arena. Trees of meshes that `previous` has or keeps with the same
-    /// settings are shared; those for another leaf size are made from them. Null when cancelled.
+    /// settings are shared; those for another leaf size are made from them. Of a mesh that `better` (may be null) has a tree
+    /// of, that one is taken. Null when cancelled.
     static std::shared_ptr<const Accelerator> build(std::vector<GeometryInstance> instances,
                                                     const AccelSettings& settings, const Accelerator* previous,
-                                                    BuildControl& control);
+                                                    BuildControl& control, const Accelerator* better = nullptr);
 
     /// hits[i] becomes the closest hit of rays[i] with t_min <= t <= t_max, ties by is_closer, or an invalid Hit.
     /// rays.size() == hits.size(). One call for a whole batch: the dispatch is a batch's, not a ray's.

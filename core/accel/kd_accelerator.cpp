@@ -23,20 +23,24 @@ AccelSettings settings_for(const TriangleMesh& mesh, AccelSettings settings) {
 
 std::shared_ptr<const KdAccelerator> KdAccelerator::build(std::vector<GeometryInstance> instances,
                                                           const AccelSettings& settings, const KdAccelerator* previous,
-                                                          BuildControl& control) {
+                                                          const KdAccelerator* better, BuildControl& control) {
     const auto start = std::chrono::steady_clock::now();
     const std::shared_ptr<KdAccelerator> result(new KdAccelerator);
     result->instances_ = std::move(instances);
     result->settings_ = settings;
     result->objects_.reserve(result->instances_.size());
     for (const GeometryInstance& instance : result->instances_) result->objects_.emplace_back(instance);
-    if (!result->build_meshes(previous, control) || !result->build_objects(control)) return nullptr;
+    if (previous) result->mesh_trees_ = previous->mesh_trees_;
+    if (better) {
+        for (const auto& [mesh, tree] : better->mesh_trees_) result->mesh_trees_.insert_or_assign(mesh, tree);
+    }
+    if (!result->build_meshes(control) || !result->build_objects(control)) return nullptr;
     result->stats_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
 }
 
-bool KdAccelerator::build_meshes(const KdAccelerator* previous, BuildControl& control) {
-    if (previous) mesh_trees_ = previous->mesh_trees_;
+/// Makes the trees that are not among mesh_trees_ yet.
+bool KdAccelerator::build_meshes(BuildControl& control) {
     std::erase_if(mesh_trees_, [&](const auto& entry) {
         return entry.second->mesh.expired() || entry.second->split != settings_.split;
     });

@@ -31,7 +31,7 @@ public:
     /// Null when cancelled.
     static std::shared_ptr<const KdAccelerator> build(std::vector<GeometryInstance> instances,
                                                       const AccelSettings& settings, const KdAccelerator* previous,
-                                                      BuildControl& control);
+                                                      const KdAccelerator* better, BuildControl& control);
 
     void intersect(std::span<const Ray> rays, std::span<Hit> hits) const override { kd_intersect(scene(), rays, hits); }
     void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const override {
@@ -52,7 +52,7 @@ public:
 
 private:
     KdAccelerator() = default;
-    bool build_meshes(const KdAccelerator* previous, BuildControl& control);
+    bool build_meshes(BuildControl& control);
     bool build_objects(BuildControl& control);
     bool build_object_tree(std::span<const Bounds3> bounds, BuildControl& control);
     KdScene scene() const {

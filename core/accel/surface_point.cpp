@@ -78,6 +78,7 @@ Surfaces::Surfaces(std::span<const GeometryInstance> instances, std::span<const 
                 if constexpr (std::is_same_v<Shape, std::shared_ptr<const TriangleMesh>>)
                     entries_.back().interpolates = !shape->normals.empty();
                 entries_.back().flat = kFlat<SurfaceOf<Shape>>;
+                interpolate_ |= entries_.back().interpolates;
                 has_meshes_ |= instance.shape.index() == kMeshKind;
                 if constexpr (std::is_same_v<Shape, Sphere>) {
                     tables_->spheres.push_back(table.back().sphere);

@@ -41,6 +41,8 @@ public:
     /// where nobody asks for uv.
     void points(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
                 std::span<SurfacePoint> points) const;
+    /// Whether the shading normal is another than the geometric one anywhere.
+    bool interpolate() const { return interpolate_; }
     std::uint64_t memory_bytes() const;
     /// Of transforms that nothing reads: the shape has been taken to the world once and for all.
     std::uint64_t bytes_left_out() const;
@@ -58,7 +60,7 @@ private:
     };
     std::vector<Entry> entries_;
     std::unique_ptr<Tables> tables_;
-    bool has_meshes_ = false;
+    bool has_meshes_ = false, interpolate_ = false;
 };
 
 /// The same for a single hit.

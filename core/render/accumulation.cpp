@@ -120,6 +120,7 @@ void Accumulation::restart() {
     }
     film_.clear_rejected();
     film_.clear_splats();
+    round_.clear();
     round_rays_ = 0;
 }
 
@@ -208,6 +209,10 @@ bool Accumulation::scale_light(const Vec3d& factor) {
         for (const Tile& tile : tiles_) luminances.push_back(luminance_sums(tile));
     }
     film_.scale(factor);
+    for (auto& splats : round_) {
+        if (!splats) continue;
+        for (Splat& splat : *splats) splat.radiance *= Color(factor);
+    }
     if (adapts()) scale_noise(luminances);
     return true;
 }
@@ -238,30 +243,30 @@ void Accumulation::scale_noise(const std::vector<std::array<double, 2>>& luminan
     rounds_finished_ = false;
 }
 
-/// All light paths that go with one sample of every pixel, or none where `control` does not allow.
+/// Goes on with the light paths that go with one more sample of every pixel; false where `control` does not allow all.
 bool Accumulation::add_round(const LightTracer& tracer, PassControl& control) {
-    if (control.cancelled || std::chrono::steady_clock::now() >= control.stop_at) return false;
     const std::uint32_t round = film_.rounds();
-    const std::size_t count = (tracer.paths() + kLightPaths - 1) / kLightPaths;
-    std::vector<std::vector<Splat>> splats(count);
+    round_.resize((tracer.paths() + kLightPaths - 1) / kLightPaths);
     const std::uint64_t rays_before = rays_of(light_batches_);
-    parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(round_.size(), 1, [&](std::size_t begin, std::size_t end) {
         LightBatch& batch = light_batches_.local();
         for (std::size_t i = begin; i < end; ++i) {
+            if (round_[i]) continue;
+            if (control.stops()) return;
             const std::uint32_t first = static_cast<std::uint32_t>(i) * kLightPaths;
-            if (!tracer.trace(first, std::min(kLightPaths, tracer.paths() - first), round, batch, control.cancelled)) {
-                return;
-            }
-            splats[i].swap(batch.splats);
+            const std::uint32_t count = std::min(kLightPaths, tracer.paths() - first);
+            if (!tracer.trace(first, count, round, batch, control.cancelled)) return;
+            round_[i].emplace().swap(batch.splats);
         }
     });
-    if (control.cancelled) return false;
     round_rays_ += rays_of(light_batches_) - rays_before;
+    if (!std::ranges::all_of(round_, [](const auto& splats) { return splats.has_value(); })) return false;
     // One thread in the order of the paths: sums do not depend on how many there are.
-    for (const std::vector<Splat>& batch : splats) {
-        for (const Splat& splat : batch) film_.splat(splat.pixel, round, splat.radiance);
+    for (const auto& splats : round_) {
+        for (const Splat& splat : *splats) film_.splat(splat.pixel, round, splat.radiance);
     }
     film_.end_round(round);
+    round_.clear();
     return true;
 }
 
@@ -270,7 +275,7 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
     if (tile.samples == 0) clear(tile);
     const int samples_at_once = static_cast<int>(std::max<std::size_t>(1, kBatchPaths / tile.pixels()));
     while (tile.samples < samples) {
-        if (control.cancelled || std::chrono::steady_clock::now() >= control.stop_at) return;
+        if (control.stops()) return;
         int end = std::min(samples, tile.samples + samples_at_once);
         if (adapts()) end = std::min(end, end_of_half(tile.samples));
         batch.ids.clear();

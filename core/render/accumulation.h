@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <vector>
 
 namespace rayuela {
@@ -19,10 +20,13 @@ struct PassControl {
     const std::atomic<bool>& cancelled;
     std::atomic<std::uint64_t>& paths_done;
     std::chrono::steady_clock::time_point stop_at = std::chrono::steady_clock::time_point::max();
+
+    bool stops() const { return cancelled || std::chrono::steady_clock::now() >= stop_at; }
 };
 
 /// A film being filled tile by tile. A pass may be cut short at any point and taken up again: each tile knows how many
-/// samples it has, and every sample comes out the same whenever and wherever it is traced.
+/// samples it has, and every sample comes out the same whenever and wherever it is traced. So do paths from lamps, which
+/// are shown once their round is complete.
 class Accumulation {
 public:
     Accumulation(int width, int height);
@@ -91,6 +95,8 @@ private:
     std::uint64_t round_rays_ = 0;  ///< Of all rounds.
     bool rounds_finished_ = false;  ///< Light paths bring no noise that matters.
     Film film_;
+    /// What each batch of light paths of the round under way brings, once it has been traced; empty between rounds.
+    std::vector<std::optional<std::vector<Splat>>> round_;
     std::vector<std::uint32_t> object_ids_;
     std::vector<Tile> tiles_;
     Batches batches_;

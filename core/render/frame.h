@@ -46,7 +46,7 @@ struct RenderStatistics {
     std::uint64_t rays = 0;         ///< Closest-hit rays.
     std::uint64_t shadow_rays = 0;  ///< Any-hit rays.
     /// As in RayCounts.
-    std::uint64_t lamp_paths = 0, environment_lookups = 0, textured_hits = 0;
+    std::uint64_t lamp_paths = 0, environment_lookups = 0, textured_hits = 0, passing_rays = 0;
     std::array<std::uint64_t, kRejectionCount> rejected{};
     double render_seconds = 0;  ///< Wall time in passes, pauses left out.
     double samples_per_second = 0;

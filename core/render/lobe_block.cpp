@@ -72,11 +72,11 @@ struct InteractionLanes {
     BasisLanes frame;
     Vec3Lanes wo_local;
 
-    HWY_INLINE InteractionLanes(const LobeBlock& block, std::size_t i)
+    HWY_INLINE InteractionLanes(const LobeTask& task, const LobeBlock& block, std::size_t i)
         : p(load(block.light.p, i)),
           p_error(load(block.p_error, i)),
           ng(load(block.ng, i)),
-          frame(shading_normal(load(block.wo, i), ng, load(block.ns, i))),
+          frame(task.interpolates ? shading_normal(load(block.wo, i), ng, load(block.ns, i)) : ng),
           wo_local(frame.to_local(load(block.wo, i))) {}
 
     static HWY_INLINE Vec3Lanes shading_normal(const Vec3Lanes& w, const Vec3Lanes& ng, const Vec3Lanes& ns) {
@@ -92,13 +92,13 @@ HWY_INLINE void store_bits(Floats bits, LobeBlock::WordRow& row, std::size_t i) 
     hn::Store(hn::BitCast(WordTag(), bits), WordTag(), row + i);
 }
 
-HWY_INLINE void fetch(const PathLanes& paths, std::size_t i, LobeBlock& block) {
+HWY_INLINE void fetch(const LobeTask& task, const PathLanes& paths, std::size_t i, LobeBlock& block) {
     const FourLanes a = paths.point(0), b = paths.point(4), c = paths.point(8), sampler = paths.sampler();
     store(-paths.ray_direction(), block.wo, i);
     store(a.xyz(), block.light.p, i);
     store(Vec3Lanes{a.w, b.x, b.y}, block.p_error, i);
     store(Vec3Lanes{b.z, b.w, c.x}, block.ng, i);
-    store(Vec3Lanes{c.y, c.z, c.w}, block.ns, i);
+    if (task.interpolates) store(Vec3Lanes{c.y, c.z, c.w}, block.ns, i);
     store_bits(sampler.x, block.key_0, i);
     store_bits(sampler.y, block.key_1, i);
     store_bits(sampler.z, block.reversed_index, i);
@@ -112,12 +112,12 @@ HWY_ATTR void prepare(const LobeTask& task, const LobePaths& paths, LobeBlock& b
     }
     block.light.size = block.size;
     for (std::size_t i = 0; i < block.size; i += kLanes) {
-        fetch({paths, block, i}, i, block);
+        fetch(task, {paths, block, i}, i, block);
         if (!task.samples_lights) continue;
         const Vec2Lanes u = samplers(task, block, i).get_2d(task.light_dimension);
         store(u.x, block.light.u, i);
         store(u.y, block.light.v, i);
-        const InteractionLanes at(block, i);
+        const InteractionLanes at(task, block, i);
         const Vec3Lanes n = select(below_zero(at.wo_local.z), -at.frame.n, at.frame.n);
         store(transmits(task.kind) ? all_lanes(Vec3(0)) : n, block.light.n, i);
     }
@@ -197,7 +197,7 @@ HWY_ATTR void scatter_as(const LobeTask& task, const LobePaths& paths, LobeBlock
     const FloatTag d;
     block.casts_shadow_ray = block.goes_on = 0;
     for (std::size_t i = 0; i < block.size; i += kLanes) {
-        const InteractionLanes at(block, i);
+        const InteractionLanes at(task, block, i);
         const PathLanes path{paths, block, i};
         const Lobe lobe(path, at.wo_local);
         const Vec3Lanes throughput = path.throughput();

@@ -53,6 +53,7 @@ struct LobeTask {
     SamplerKind sampler;
     std::uint32_t light_dimension, lobe_dimension, direction_dimension, roulette_dimension;
     bool samples_lights;  ///< Not for deltas.
+    bool interpolates;    ///< Some shading normal is another than the geometric one.
     bool mis;
     bool black_shadow_rays;     ///< Also where they bring nothing.
     float roulette_throughput;  ///< Below it paths may be cut; 0 where not yet.

@@ -24,6 +24,7 @@ struct RayCounts {
     std::uint64_t lamp_paths = 0;           ///< See LightTracer.
     std::uint64_t environment_lookups = 0;  ///< By rays that have left the scene.
     std::uint64_t textured_hits = 0;        ///< At which a material had to be worked out anew.
+    std::uint64_t passing_rays = 0;  ///< Of the rays, those of the camera that have not been traced: see PassingRays.
 
     RayCounts& operator+=(const RayCounts& other) {
         paths += other.paths;
@@ -32,6 +33,7 @@ struct RayCounts {
         lamp_paths += other.lamp_paths;
         environment_lookups += other.environment_lookups;
         textured_hits += other.textured_hits;
+        passing_rays += other.passing_rays;
         return *this;
     }
 };

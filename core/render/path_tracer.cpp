@@ -53,6 +53,7 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       height_(height),
       options_(options),
       camera_(scene.camera(), static_cast<double>(scene.scene().film.width) / scene.scene().film.height),
+      passing_rays_(scene.accelerator(), camera_),
       parts_seed_(static_cast<std::uint32_t>(mix_bits(scene.scene().render.seed + 0x9e3779b97f4a7c15u))),
       rr_start_(scene.scene().render.rr_start.value_or(kDefaultRouletteStart)),
       light_sampling_(options.light_sampling && scene.features().light_sampling()),
@@ -69,6 +70,8 @@ bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, Pat
 template <bool kVaries>
 bool PathTracer::trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
     camera_rays(batch);
+    // A record is of the rays that are traced.
+    if (passing_rays_.possible() && options_.shortcuts.passing_rays && !record) end_passing_rays(batch);
     for (int bounce = 0; !batch.rays.empty(); ++bounce) {
         if (cancelled) return false;
         intersect(batch);
@@ -112,6 +115,26 @@ void PathTracer::camera_rays(PathBatch& batch) const {
     batch.counts.paths += n;
 }
 
+/// Camera rays that meet nothing end here.
+void PathTracer::end_passing_rays(PathBatch& batch) const {
+    const std::size_t n = batch.rays.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Ray& ray = batch.rays[i];
+        if (passing_rays_.passes(ray)) {
+            leave(batch, batch.states[i], ray.direction);
+            continue;
+        }
+        batch.states[kept] = batch.states[i];
+        batch.rays[kept] = ray;
+        ++kept;
+    }
+    batch.states.resize(kept);
+    batch.rays.resize(kept);
+    batch.counts.rays += n - kept;
+    batch.counts.passing_rays += n - kept;
+}
+
 void PathTracer::intersect(PathBatch& batch) const {
     batch.hits.resize(batch.rays.size());
     scene_.accelerator().intersect(batch.rays, batch.hits);
@@ -150,9 +173,7 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
         const Hit& hit = batch.hits[i];
         if (bounce == 0) batch.first_object[state.path] = hit.object;
         if (!hit.valid()) {
-            if (!scene_.features().environment && options_.shortcuts.no_sky) continue;
-            ++batch.counts.environment_lookups;
-            batch.radiance[state.part] += environment_light(state, ray.direction);
+            leave(batch, state, ray.direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
@@ -243,6 +264,13 @@ void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray,
                                      sampler.get_2d(direction_dimension(bounce, light_sampling_))};
         scatter(batch, part, ray, at, bsdf, numbers, bounce);
     }
+}
+
+/// Adds what comes from the environment, if anything does.
+void PathTracer::leave(PathBatch& batch, const PathState& state, const Vec3& direction) const {
+    if (!scene_.features().environment && options_.shortcuts.no_sky) return;
+    ++batch.counts.environment_lookups;
+    batch.radiance[state.part] += environment_light(state, direction);
 }
 
 Color PathTracer::environment_light(const PathState& state, const Vec3& direction) const {

@@ -2,6 +2,7 @@
 
 #include "core/render/camera_rays.h"
 #include "core/render/light_tracer.h"
+#include "core/render/passing_rays.h"
 #include "core/render/path_batch.h"
 #include "core/render/path_record.h"
 #include "core/render/render_scene.h"
@@ -50,6 +51,7 @@ private:
     template <bool kVaries>
     bool trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const;
     void camera_rays(PathBatch& batch) const;
+    void end_passing_rays(PathBatch& batch) const;
     void intersect(PathBatch& batch) const;
     template <bool kVaries>
     void surface_interactions(PathBatch& batch) const;
@@ -58,6 +60,7 @@ private:
     void add_unblocked_light(PathBatch& batch) const;
     void add_parts(PathBatch& batch) const;
 
+    void leave(PathBatch& batch, const PathState& state, const Vec3& direction) const;
     Color environment_light(const PathState& state, const Vec3& direction) const;
     Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;
     void shade_surfaces(PathBatch& batch, int bounce, bool last) const;
@@ -85,6 +88,7 @@ private:
     int width_, height_;
     PathTracerOptions options_;
     CameraRays camera_;
+    PassingRays passing_rays_;
     std::uint32_t parts_seed_;
     int rr_start_;
     bool light_sampling_;

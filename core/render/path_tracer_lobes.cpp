@@ -73,6 +73,7 @@ LobeTask PathTracer::lobe_task(PackedBsdf::Kind kind, int bounce) const {
             .direction_dimension = direction_dimension(bounce, light_sampling_),
             .roulette_dimension = dimension(bounce, kRoulette),
             .samples_lights = light_sampling_ && !is_delta(kind),
+            .interpolates = scene_.surfaces().interpolate(),
             .mis = options_.mis,
             .black_shadow_rays = !options_.shortcuts.black_shadow_rays,
             .roulette_throughput = roulette ? roulette_throughput_ : 0};

@@ -182,7 +182,9 @@ void ProgressiveRenderer::render(const Pass& pass, const std::atomic<bool>& canc
     const double seconds = seconds_since(start);
     render_seconds_ += seconds;
     counts_ += traced;
-    if (traced.paths >= kMeasurablePaths) seconds_per_path_ = seconds / static_cast<double>(traced.paths);
+    // A brief pass may hold more of a round of lamp paths than goes with its camera paths.
+    if (pass.kind != Pass::Kind::brief && traced.paths >= kMeasurablePaths)
+        seconds_per_path_ = seconds / static_cast<double>(traced.paths);
     if (!coarse) {
         film_unpublished_ |= traced.paths > 0;
     } else if (target.samples() == samples) {
@@ -240,6 +242,7 @@ RenderStatistics ProgressiveRenderer::statistics(SessionPhase phase) const {
             .lamp_paths = counts_.lamp_paths,
             .environment_lookups = counts_.environment_lookups,
             .textured_hits = counts_.textured_hits,
+            .passing_rays = counts_.passing_rays,
             .rejected = film_->film().rejected(),
             .render_seconds = render_seconds_,
             .samples_per_second = rate(counts_.paths),

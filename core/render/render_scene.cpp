@@ -175,19 +175,23 @@ std::shared_ptr<const RenderScene> RenderScene::update(const RenderScene* previo
     return next;
 }
 
-std::shared_ptr<const Accelerator> RenderScene::without_drafts(BuildControl& control) const {
+/// The same objects by other settings, in the trees of `better` (may be null) for the meshes that are there.
+std::shared_ptr<const Accelerator> RenderScene::rebuilt(const AccelSettings& settings, const Accelerator* better,
+                                                        BuildControl& control) const {
     const auto instances = accelerator_->instances();
+    return Accelerator::build({instances.begin(), instances.end()}, settings, accelerator_.get(), control, better);
+}
+
+std::shared_ptr<const Accelerator> RenderScene::without_drafts(BuildControl& control) const {
     AccelSettings settings = accelerator_->settings();
     settings.draft = false;
-    return Accelerator::build({instances.begin(), instances.end()}, settings, accelerator_.get(), control);
+    return rebuilt(settings, nullptr, control);
 }
 
 std::shared_ptr<const RenderScene> RenderScene::with_trees(const Accelerator& known) const {
-    const auto instances = accelerator_->instances();
     BuildControl control;
     auto next = std::make_shared<RenderScene>(*this);
-    next->accelerator_ =
-        Accelerator::build({instances.begin(), instances.end()}, accelerator_->settings(), &known, control);
+    next->accelerator_ = rebuilt(accelerator_->settings(), &known, control);
     return next;
 }
 

@@ -45,7 +45,7 @@ public:
     bool has_drafts() const { return accelerator_->settings().draft; }
     /// The same objects in the trees they were meant to have. Null when cancelled.
     std::shared_ptr<const Accelerator> without_drafts(BuildControl& control) const;
-    /// This with the trees of `known` for the meshes that are there.
+    /// This with the trees of `known` for the meshes that are there; those of other meshes stay.
     std::shared_ptr<const RenderScene> with_trees(const Accelerator& known) const;
 
     const Scene& scene() const { return *scene_; }
@@ -81,6 +81,8 @@ private:
     using FlatObjects = std::vector<FlatObject>;
     using PackedMaterials = std::vector<PackedMaterial>;
 
+    std::shared_ptr<const Accelerator> rebuilt(const AccelSettings& settings, const Accelerator* better,
+                                               BuildControl& control) const;
     void flatten(std::vector<GeometryInstance>& instances, FlatObjects& objects) const;
     void pack_materials();
     void find_surfaces();

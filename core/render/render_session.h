@@ -12,8 +12,7 @@ namespace rayuela {
 struct SessionOptions {
     int threads = 0;          ///< Workers; 0 is one a hardware thread.
     bool interactive = true;  ///< Coarse passes after a restart, and frames published while rendering.
-    bool drafts =
-        true;  ///< Interactive: the first image of a large mesh is traced in the draft of a tree (kDraftTriangles).
+    bool drafts = true;       ///< Interactive: a large mesh is first shown in the draft of a tree (kDraftTriangles).
     SamplingOptions sampling;
 };
 

@@ -12,6 +12,7 @@ struct Shortcuts {
     bool lamp_blocks = true;
     bool lobe_blocks = true;
     bool ready_materials = true;
+    bool passing_rays = true;
     bool no_sky = true;
     bool no_light = true;
     bool no_lens = true;
@@ -35,6 +36,8 @@ inline constexpr ShortcutField kShortcuts[] = {
     {"lobe_blocks", &Shortcuts::lobe_blocks, "Surfaces are shaded one by one."},
     {"ready_materials", &Shortcuts::ready_materials,
      "Materials are worked out at every hit, with texture coordinates."},
+    {"passing_rays", &Shortcuts::passing_rays,
+     "Camera rays are traced even where they pass the bounds of all objects by."},
     {"no_sky", &Shortcuts::no_sky, "Rays that leave the scene look up a black sky."},
     {"no_light", &Shortcuts::no_light, "Paths bounce on though there is no light to find."},
     {"no_lens", &Shortcuts::no_lens, "Points on a lens without extent are drawn."},

@@ -42,8 +42,8 @@ TEXTURES = [
 SHADING_NORMALS = [
     (INTERACTION, "return (glm::dot(w, point.ng) > 0) == (glm::dot(w, point.ns) > 0) ? point.ns : point.ng;",
      "return static_cast<void>(w), point.ng;"),
-    (BLOCK, "frame(shading_normal(load(block.wo, i), ng, load(block.ns, i))),", "frame(ng),"),
-    (BLOCK, "    store(Vec3Lanes{c.y, c.z, c.w}, block.ns, i);\n", ""),
+    (BLOCK, "frame(task.interpolates ? shading_normal(load(block.wo, i), ng, load(block.ns, i)) : ng),", "frame(ng),"),
+    (BLOCK, "    if (task.interpolates) store(Vec3Lanes{c.y, c.z, c.w}, block.ns, i);\n", "    static_cast<void>(task);\n"),
     (SURFACES, "if (wants_uv(i) || entries_[hits[i].object].interpolates)", "if (wants_uv(i))"),
     (SURFACES, "    point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;\n", ""),
     (SURFACES, "                    if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);\n", ""),
@@ -56,7 +56,7 @@ LENSES = [
     (CAMERA, "    if (lens_radius_ == 0) {\n        ray.origin = origin_;", "    if (true) {\n        ray.origin = origin_;"),
 ]
 SKIES = [
-    (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) continue;", "if (true) continue;"),
+    (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) return;", "if (true) return;"),
 ]
 PANORAMAS = [
     (SKY, "    if (image_) return scale_ * look_up(*image_, image_position(w));\n", ""),

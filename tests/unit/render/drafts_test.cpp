@@ -43,14 +43,18 @@ std::shared_ptr<const RenderScene> update(const Scene& scene, bool draft, const 
                                control, {}, draft);
 }
 
-const MeshTree& large_tree(const Accelerator& accelerator) {
+const MeshTree& tree_of(const std::shared_ptr<const TriangleMesh>& mesh, const Accelerator& accelerator) {
     const auto& kd = dynamic_cast<const KdAccelerator&>(accelerator);
     const MeshTree* found = nullptr;
     for (std::uint32_t i = 0; i < kd.instances().size(); ++i) {
         const MeshTree* const tree = kd.mesh_tree(i);
-        if (tree && tree->stats.primitives == large_mesh()->triangles.size()) found = tree;
+        if (tree && tree->mesh.lock() == mesh) found = tree;
     }
     return *found;
+}
+
+const MeshTree& large_tree(const Accelerator& accelerator) {
+    return tree_of(large_mesh(), accelerator);
 }
 
 /// Bits of all that rays read.
@@ -133,6 +137,26 @@ TEST(Drafts, StayThroughEditsAndTakeTheTreesAfterThem) {
     const auto known = update(scene, true, swapped.get());
     EXPECT_EQ(&large_tree(known->accelerator()), &large_tree(*complete)) << "a tree for another leaf size will do";
     EXPECT_TRUE(known->has_drafts());
+}
+
+TEST(Drafts, OfAMeshThatComesLaterStayWhenTheTreesOfTheOthersCome) {
+    Scene scene = large_scene(16, 12);
+    const auto first = update(scene, true);
+    BuildControl control;
+    const auto complete = first->without_drafts(control);
+    const auto second_mesh = torus_mesh(500, 270);
+    add_object(scene, Mesh{"second", second_mesh}, scene.materials[0].id, {.translate = Vec3(3, 0, 0)});
+    const auto both = update(scene, true, first.get());
+    const auto swapped = both->with_trees(*complete);
+    EXPECT_TRUE(swapped->has_drafts());
+    EXPECT_EQ(&large_tree(swapped->accelerator()), &large_tree(*complete));
+    EXPECT_EQ(&tree_of(second_mesh, swapped->accelerator()), &tree_of(second_mesh, both->accelerator()));
+
+    BuildControl rest;
+    const auto all = swapped->without_drafts(rest);
+    EXPECT_EQ(&large_tree(*all), &large_tree(*complete)) << "what is complete is not built again";
+    EXPECT_LT(rest.total, large_mesh()->triangles.size() + second_mesh->triangles.size());
+    EXPECT_TRUE(same_bits(tree_of(second_mesh, *all), tree_of(second_mesh, update(scene, false)->accelerator())));
 }
 
 /// Frames of an interactive session, and the image of the scene without drafts.

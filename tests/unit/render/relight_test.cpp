@@ -191,6 +191,61 @@ bool goes_on(Scene scene, const std::function<void(Scene&)>& edit, const Samplin
     return goes_on;
 }
 
+/// A film whose passes are over at once: of a round of light paths each does one batch, of the samples one of a tile.
+class BriefPasses {
+public:
+    explicit BriefPasses(const Scene& scene) : film_(scene.film.width, scene.film.height) { show(scene); }
+    void show(const Scene& scene) {
+        scene_ = make_render_scene(scene);
+        tracer_.emplace(*scene_, scene.film.width, scene.film.height);
+    }
+    /// One pass. Not parallel, so that it is over after the first batch.
+    void pass(int samples) {
+        PassControl control{.cancelled = cancelled_, .paths_done = done_};
+        control.stop_at = std::chrono::steady_clock::now() + std::chrono::microseconds(200);
+        tbb::task_arena(1).execute([&] { counts_ += film_.add_samples(*tracer_, samples, control); });
+        ++passes_;
+    }
+    Accumulation& film() { return film_; }
+    const RayCounts& counts() const { return counts_; }
+    int passes() const { return passes_; }
+    std::uint32_t lamp_paths_a_round() const { return tracer_->light_tracer()->paths(); }
+
+private:
+    Accumulation film_;
+    std::shared_ptr<const RenderScene> scene_;
+    std::optional<PathTracer> tracer_;
+    RayCounts counts_;
+    int passes_ = 0;
+    const std::atomic<bool> cancelled_{false};
+    std::atomic<std::uint64_t> done_{0};
+};
+
+TEST(Relight, BriefPassesEndWithinARoundOfLampPathsAndGoOn) {
+    Scene scene = lamp_scene();
+    scene.film.width = 384;
+    scene.film.height = 288;
+    const Scene brighter = relit(scene, Color(4));
+    for (const bool edits : {false, true}) {
+        BriefPasses brief(scene);
+        const std::uint32_t batches = (brief.lamp_paths_a_round() + 4095) / 4096;
+        ASSERT_GT(batches, 1u);
+        while (brief.film().samples() < 1) brief.pass(1);
+        brief.pass(2);
+        EXPECT_EQ(brief.film().film().rounds(), 1u);
+        EXPECT_GT(brief.counts().lamp_paths, brief.lamp_paths_a_round()) << "within the second round";
+        if (edits) {
+            ASSERT_TRUE(brief.film().scale_light(Vec3d(4)));
+            brief.show(brighter);
+        }
+        while (brief.film().samples() < 2) brief.pass(2);
+        EXPECT_EQ(brief.counts().lamp_paths, 2 * brief.lamp_paths_a_round()) << "none twice";
+        EXPECT_GE(brief.passes(), static_cast<int>(2 * batches));
+        const auto expected = render(edits ? brighter : scene, 2);
+        EXPECT_EQ(means(brief.film().film()), means(expected->film()));
+    }
+}
+
 TEST(Relight, RestartsWhereTheImageIsNotScaled) {
     const auto brighter = [](Scene& scene) { scene = relit(scene, Color(2)); };
     EXPECT_TRUE(goes_on(lamp_scene(), brighter));

@@ -99,6 +99,19 @@ TEST(Skips, MirrorsAloneNeedNoShadowRays) {
     EXPECT_EQ(skip_of(lit_ball(Metal{}), "Light samples on mirrors").saved, 2u) << "the ball and the lamp";
 }
 
+TEST(Skips, NoShadowRaysToLampsBehindTheSurfaceOrThatFaceAway) {
+    Scene scene = lit_ball(Diffuse{});
+    scene.objects.erase(scene.objects.begin() + 1);
+    const auto shadow_rays = [&] { return glance_at(scene)->statistics.shadow_rays; };
+    EXPECT_GT(shadow_rays(), 0u);
+    std::get<Sphere>(scene.objects[1].shape).center.y = -4;
+    EXPECT_EQ(shadow_rays(), 0u) << "below the floor";
+    scene.objects[1].shape = Quad{Vec3(-1, 4, -1), Vec3(0, 0, 2), Vec3(2, 0, 0)};
+    EXPECT_EQ(shadow_rays(), 0u) << "it shines upwards";
+    scene.objects[1].shape = Quad{Vec3(-1, 4, -1), Vec3(2, 0, 0), Vec3(0, 0, 2)};
+    EXPECT_GT(shadow_rays(), 0u);
+}
+
 TEST(Skips, NoPathsFromLampsWithoutCaustics) {
     EXPECT_THAT(skipped_in(lit_ball(Diffuse{})), AllOf(Contains("Paths from lamps"), Not(Contains("Shadow rays"))));
 }
