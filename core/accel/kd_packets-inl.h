@@ -35,20 +35,17 @@ public:
 
     LaneBits active() const { return active_; }
 
-    /// Whether the rays are like each other: the same dominant axis, and origins not far apart in the tree.
+    /// Whether the rays are like each other: the same dominant axis, origins not far apart in the tree, slopes alike.
     HWY_INLINE bool coherent(const Bounds3& bounds) const {
         constexpr float kSpread = 1.0f / 8;
         if (!same_dominant_axis_ || std::popcount(active_) < static_cast<int>(kLanes / 2)) return false;
-        const FloatTag d;
-        const FloatMask there = mask_of(active_);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Floats origin = load(block_.origin[axis]);
-            const float lowest = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(there, origin, hn::Set(d, kInfinity))));
-            const float highest = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(there, origin, hn::Set(d, -kInfinity))));
             const auto component = static_cast<Vec3::length_type>(axis);
-            if (!(highest - lowest <= kSpread * (bounds.hi[component] - bounds.lo[component]))) return false;
+            if (!(spread(load(block_.origin[axis])) <= kSpread * (bounds.hi[component] - bounds.lo[component])))
+                return false;
         }
-        return true;
+        constexpr float kTurn = 1.0f / 2;
+        return spread(load(block_.shear_x)) <= kTurn && spread(load(block_.shear_y)) <= kTurn;
     }
 
     /// What begins behind `t` no longer counts for the lane's ray.
@@ -138,6 +135,15 @@ private:
     };
 
     HWY_INLINE Floats load(const float* of_block) const { return hn::LoadU(FloatTag(), of_block + first_); }
+    HWY_INLINE Floats load(const double* of_block) const { return demoted(of_block + first_); }
+    /// From the lowest to the highest among the rays that there are.
+    HWY_INLINE float spread(Floats values) const {
+        const FloatTag d;
+        const FloatMask there = mask_of(active_);
+        const Floats lowest = hn::MinOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, kInfinity)));
+        const Floats highest = hn::MaxOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, -kInfinity)));
+        return hn::GetLane(highest) - hn::GetLane(lowest);
+    }
 
     const RayBlock& block_;
     std::size_t first_;

@@ -70,6 +70,16 @@ struct RayBlock {
     alignas(64) float depth[kRoom];  ///< Of the direction along z, with its sign.
 };
 
+/// kLanes doubles, rounded.
+HWY_INLINE Floats demoted(const double* values) {
+    const DoubleTag dd;
+    const hn::Rebind<float, DoubleTag> df;
+    alignas(64) float rounded[kLanes];
+    for (std::size_t i = 0; i < kLanes; i += kDoubles)
+        hn::Store(hn::DemoteTo(df, hn::LoadU(dd, values + i)), df, rounded + i);
+    return hn::Load(FloatTag(), rounded);
+}
+
 struct DoubleVec3 {
     Doubles x, y, z;
 };
