@@ -45,8 +45,8 @@ public:
     /// Lanes without a ray write to stacks of their own like all others.
     LaneGroup() { hn::Store(hn::Iota(WordTag(), 0), WordTag(), height_); }
 
-    /// Puts a ray at the root, or before that at the leaf of what stands apart.
-    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i, std::uint32_t apart) {
+    /// Puts a ray at the root.
+    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             origin_[axis][lane] = block.origin[axis][i];
             inverse_[axis][lane] = block.inverse[axis][i];
@@ -55,13 +55,9 @@ public:
         begin_[lane] = block.begin[i];
         end_[lane] = block.end[i];
         limit_[lane] = block.limit[i];
-        node_[lane] = apart;
+        node_[lane] = 0;
         height_[lane] = static_cast<std::uint32_t>(lane);
         active_ |= LaneBits{1} << lane;
-        // The root waits on the stack.
-        if (apart == 0 || block.begin[i] > block.end[i]) return;
-        stack_[lane] = {.begin = block.begin[i], .end = block.end[i], .node = 0, .unused = 0};
-        height_[lane] += kLanes;
     }
     LaneBits active() const { return active_; }
     /// What begins behind `t` no longer counts for the lane's ray.
@@ -221,10 +217,10 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
         constexpr LaneBits kAll = static_cast<LaneBits>((std::uint64_t{1} << kLanes) - 1);
         for (LaneBits idle = kAll & ~groups.group[g].active(); idle != 0; idle &= idle - 1) {
             const std::size_t lane = first_lane(idle), slot = g * kLanes + lane;
-            while (next < block.size && !block.is_open(next, tree)) ++next;
+            while (next < block.size && !block.is_open(next)) ++next;
             if (next == block.size) return;
             client.start(slot, next);
-            groups.group[g].start(lane, block, next++, tree.apart);
+            groups.group[g].start(lane, block, next++);
         }
     };
     while (true) {

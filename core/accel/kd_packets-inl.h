@@ -16,12 +16,11 @@ namespace rayuela::HWY_NAMESPACE {
 class Packet {
 public:
     /// Of rays first to first + kLanes of the block, those of them that there are.
-    HWY_INLINE Packet(const KdTree& tree, const RayBlock& block, std::size_t first) : block_(block), first_(first) {
+    HWY_INLINE Packet(const RayBlock& block, std::size_t first) : block_(block), first_(first) {
         const FloatTag d;
         hn::Store(hn::LoadU(d, block.limit + first), d, limit_);
         const Floats begin = load(block.begin), end = load(block.end);
-        const FloatMask there = tree.apart != 0 ? hn::Gt(end, hn::Set(d, -kInfinity)) : hn::Le(begin, end);
-        active_ = bits_of(d, hn::And(hn::FirstN(d, block.size - first), there));
+        active_ = bits_of(d, hn::And(hn::FirstN(d, block.size - first), hn::Le(begin, end)));
         if (active_ == 0) return;
         const Words axes = hn::LoadU(WordTag(), block.dominant_axis + first);
         const auto same = hn::Eq(axes, hn::Set(WordTag(), block.dominant_axis[first + first_lane(active_)]));
@@ -63,7 +62,6 @@ public:
         const KdNode* const nodes = tree.nodes.data();
         client.start_packet(first_, active_);
         const Floats pad = load(block_.pad);
-        if (tree.apart != 0) client.visit_packet(nodes[tree.apart], active_, *this);
         Floats begin = load(block_.begin), end = load(block_.end), limit = hn::Load(d, limit_);
         FloatMask here = hn::And(mask_of(active_), hn::Le(begin, hn::Min(end, limit)));
         if (hn::AllFalse(d, here)) return;
@@ -159,7 +157,7 @@ private:
 template <typename Client>
 HWY_INLINE void trace_packets(const KdTree& tree, RayBlock& block, Client& client) {
     for (std::size_t first = 0; first < block.size; first += kLanes) {
-        Packet packet(tree, block, first);
+        Packet packet(block, first);
         if (!packet.coherent(tree.bounds)) continue;
         const LaneBits rays = packet.active();
         packet.trace(tree, client);

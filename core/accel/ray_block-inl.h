@@ -55,9 +55,7 @@ struct RayBlock {
     alignas(64) float limit[kRoom];  ///< What begins behind it does not count.
 
     /// Whether ray i has to be traced through the tree.
-    bool is_open(std::size_t i, const KdTree& tree) const {
-        return tree.apart != 0 ? end[i] > -kInfinity : begin[i] <= end[i];
-    }
+    bool is_open(std::size_t i) const { return begin[i] <= end[i]; }
     void close(std::size_t i) {
         begin[i] = 0;
         end[i] = -kInfinity;
