@@ -10,7 +10,7 @@
 
 #include <hwy/cache_control.h>
 
-#include "core/accel/kd_packets-inl.h"
+#include "core/accel/kd_convoy-inl.h"
 #include "core/accel/sphere_lanes-inl.h"
 #include "core/accel/triangle_lanes-inl.h"
 #include "core/accel/triangle_packets-inl.h"
@@ -64,6 +64,8 @@ public:
         const std::uint32_t id = block_.id[i];
         triangles_.start(slot, i, t_end(rays_[id], hits_[id]));
     }
+
+    HWY_INLINE void move(std::size_t from, std::size_t to) { triangles_.move(from, to); }
 
     HWY_INLINE void prefetch(const LeafVisit& leaf) const {
         // As many vertices as triangles: what leaves mostly have. Four lines without a count to guess wrong.
