@@ -8,6 +8,7 @@
 
 #include "core/accel/object_lanes-inl.h"
 #include "core/accel/pair_tests-inl.h"
+#include "core/accel/rays_by_axis-inl.h"
 #include "core/math/fours_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -64,7 +65,7 @@ public:
 
     /// `ids`: at most kBlockRays, kLanes more may be read. Meshes are noted down for later, all other shapes tested.
     HWY_INLINE void trace(std::span<const std::uint32_t> ids) {
-        sort_by_axis(ids);
+        by_axis_.sort(rays_, ids);
         trace_axis<0>();
         trace_axis<1>();
         trace_axis<2>();
@@ -89,33 +90,10 @@ private:
         if (leaf_.others > 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });
     }
 
-    HWY_INLINE void sort_by_axis(std::span<const std::uint32_t> ids) {
-        const FloatTag d;
-        const WordTag dw;
-        alignas(64) std::uint32_t names[kLanes];
-        std::fill_n(size_, 3, 0);
-        for (std::size_t i = 0; i < ids.size(); i += kLanes) {
-            const FloatMask all = hn::FirstN(d, ids.size() - i);
-            const Words id = hn::IfThenElseZero(hn::RebindMask(dw, all), hn::LoadU(dw, ids.data() + i));
-            hn::Store(id, dw, names);
-            const auto direction =
-                load_fours([&](std::size_t lane) HWY_ATTR { return &rays_[names[lane]].direction.x; });
-            const Floats x = hn::Abs(direction.x), y = hn::Abs(direction.y), z = hn::Abs(direction.z);
-            const FloatMask x_longest = hn::And(hn::Gt(x, y), hn::Gt(x, z));
-            const FloatMask y_longest = hn::AndNot(x_longest, hn::Gt(y, z));
-            const FloatMask of[3] = {x_longest, y_longest, hn::Not(hn::Or(x_longest, y_longest))};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const FloatMask mask = hn::And(of[axis], all);
-                hn::StoreU(hn::Compress(id, hn::RebindMask(dw, mask)), dw, ids_[axis] + size_[axis]);
-                size_[axis] += hn::CountTrue(d, mask);
-            }
-        }
-    }
-
     template <typename Each>
     HWY_INLINE void each_group(std::uint32_t axis, const Each& each) {
-        std::uint32_t* const ids = ids_[axis];
-        const std::size_t n = size_[axis];
+        std::uint32_t* const ids = by_axis_.ids[axis];
+        const std::size_t n = by_axis_.size[axis];
         if (n > 0) std::fill_n(ids + n, kLanes, ids[0]);
         for (std::size_t i = 0; i < n; i += kLanes) each(WorldRays(rays_, hits_, ids + i, n - i, reach_));
     }
@@ -126,17 +104,16 @@ private:
         const FloatTag d;
         const auto [x, y, z] = Turn(kAxis);
         const Floats depth = rays.direction[z];
-        const Floats from = depth * rays.t_min, to = depth * rays.t_end, rounding = hn::Set(d, 4 * kUnitRoundoff);
-        const Floats z_begin = hn::Min(from, to), z_end = hn::Max(from, to);
         const Floats least = hn::Max(hn::Set(d, 1), hn::Abs(depth)) * hn::Set(d, kLeastDepthPad);
+        const DepthRange range = depth_range(depth, least, rays.t_min, rays.t_end);
         const FilterRays filter{rays.origin[x],
                                 rays.origin[y],
                                 rays.origin[z],
                                 rays.direction[x] / depth,
                                 rays.direction[y] / depth,
                                 FilterSlack::of(rays.pad),
-                                z_begin - (least + rounding * hn::Abs(z_begin)),
-                                z_end + (least + rounding * hn::Abs(z_end))};
+                                range.begin,
+                                range.end};
         const PairFilter<kAxis> pairs(filter, rays.usable);
         const std::size_t of_two = std::clamp(scene_.leaves->apart_pairs.of_two, first, end);
         test_pairs<kAxis, true>(pairs, rays.id, first, first, of_two);
@@ -334,8 +311,7 @@ private:
     std::span<Hit> hits_;
     std::vector<MeshCandidate>& meshes_;
     float reach_;
-    std::uint32_t ids_[3][kBlockRays + kLanes];  ///< Rays by dominant axis.
-    std::size_t size_[3] = {};
+    RaysByAxis by_axis_;
     std::uint32_t candidate_[kRoom + kLanes];
     std::size_t count_ = 0;
     SphereCandidates spheres_;

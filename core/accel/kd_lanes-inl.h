@@ -38,6 +38,16 @@ struct AxisChoice {
     }
 };
 
+/// A node still to be visited, and where the ray is in it.
+struct alignas(16) WayEntry {
+    float begin, end;
+    float node;  ///< Its index, by its bits.
+    float unused;
+};
+
+/// As many nodes a ray may have to visit when it is put into a lane.
+inline constexpr std::size_t kMaxRest = 16;
+
 /// One ray a lane, each with its own node and stack. A step takes every lane that stands at an inner node one node on; lanes
 /// at a leaf stand still. Planes are passed RayBlock::pad early and late, so that the children overlap.
 class LaneGroup {
@@ -45,23 +55,23 @@ public:
     /// Lanes without a ray write to stacks of their own like all others.
     LaneGroup() { hn::Store(hn::Iota(WordTag(), 0), WordTag(), height_); }
 
-    /// Puts a ray at the root, or before that at the leaf of what stands apart.
-    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i, std::uint32_t apart) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            origin_[axis][lane] = block.origin[axis][i];
-            inverse_[axis][lane] = block.inverse[axis][i];
-        }
-        pad_[lane] = block.pad[i];
+    /// Puts a ray at the root.
+    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i) {
+        set_ray(lane, block, i);
         begin_[lane] = block.begin[i];
         end_[lane] = block.end[i];
-        limit_[lane] = block.limit[i];
-        node_[lane] = apart;
+        node_[lane] = 0;
         height_[lane] = static_cast<std::uint32_t>(lane);
-        active_ |= LaneBits{1} << lane;
-        // The root waits on the stack.
-        if (apart == 0 || block.begin[i] > block.end[i]) return;
-        stack_[lane] = {.begin = block.begin[i], .end = block.end[i], .node = 0, .unused = 0};
-        height_[lane] += kLanes;
+    }
+    /// Puts a ray at the first of the nodes that it has still to visit.
+    HWY_INLINE void start(std::size_t lane, const RayBlock& block, std::size_t i, std::span<const WayEntry> rest) {
+        set_ray(lane, block, i);
+        begin_[lane] = rest[0].begin;
+        end_[lane] = rest[0].end;
+        node_[lane] = std::bit_cast<std::uint32_t>(rest[0].node);
+        std::size_t height = lane;
+        for (std::size_t k = rest.size() - 1; k > 0; --k, height += kLanes) stack_[height] = rest[k];
+        height_[lane] = static_cast<std::uint32_t>(height);
     }
     LaneBits active() const { return active_; }
     /// What begins behind `t` no longer counts for the lane's ray.
@@ -165,19 +175,22 @@ public:
     }
 
 private:
-    /// A child still to be visited, and where the ray is in it.
-    struct alignas(16) Entry {
-        float begin, end;
-        float node;  ///< Its index, by its bits.
-        float unused;
-    };
+    HWY_INLINE void set_ray(std::size_t lane, const RayBlock& block, std::size_t i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin_[axis][lane] = block.origin[axis][i];
+            inverse_[axis][lane] = block.inverse[axis][i];
+        }
+        pad_[lane] = block.pad[i];
+        limit_[lane] = block.limit[i];
+        active_ |= LaneBits{1} << lane;
+    }
 
     alignas(64) LaneAxes origin_{}, inverse_{};
     alignas(64) float pad_[kLanes] = {};  ///< RayBlock::pad.
     alignas(64) float begin_[kLanes] = {}, end_[kLanes] = {}, limit_[kLanes] = {};
     alignas(64) std::uint32_t node_[kLanes] = {}, height_[kLanes] = {};
     alignas(64) std::uint32_t word_[kLanes] = {}, data_[kLanes] = {};  ///< Of the nodes at the last step.
-    alignas(64) Entry stack_[(kKdMaxDepth + 1) * kLanes];
+    alignas(64) WayEntry stack_[(kMaxRest + kKdMaxDepth + 1) * kLanes];
     LaneBits active_ = 0;
 };
 
@@ -209,22 +222,37 @@ struct LaneGroups {
     void stop(std::size_t slot) { of(slot).stop(slot % kLanes); }
 };
 
-/// Traces the rays of the block through the tree, many at once:
-/// `void start(slot, i)`: ray i of the block now has the slot;
-/// `void visit(span<const LeafVisit>, slots)` tests the primitives of the leaves, then sets the limits of the slots or stops
-/// those that have their answers.
+/// Rays of a block, each to start at the root of a tree.
 template <typename Client>
-HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& client) {
+class BlockRays {
+public:
+    BlockRays(const RayBlock& block, Client& client) : block_(block), client_(client) {}
+
+    HWY_INLINE bool start(LaneGroup& group, std::size_t slot) {
+        while (next_ < block_.size && !block_.is_open(next_)) ++next_;
+        if (next_ == block_.size) return false;
+        client_.start(slot, next_);
+        group.start(slot % kLanes, block_, next_++);
+        return true;
+    }
+
+private:
+    const RayBlock& block_;
+    Client& client_;
+    std::size_t next_ = 0;
+};
+
+/// Traces rays through the tree, many at once:
+/// `bool rays.start(group, slot)` gives the slot, in this group, the next ray; false where there is none;
+/// `void client.visit(span<const LeafVisit>, slots)` tests the primitives of the leaves, then sets the limits of the slots or
+/// stops those that have their answers.
+template <typename Rays, typename Client>
+HWY_INLINE void trace_rays(const KdTree& tree, Rays& rays, Client& client) {
     LaneGroups groups;
-    std::size_t next = 0;
     const auto refill = [&](std::size_t g) HWY_ATTR {
         constexpr LaneBits kAll = static_cast<LaneBits>((std::uint64_t{1} << kLanes) - 1);
         for (LaneBits idle = kAll & ~groups.group[g].active(); idle != 0; idle &= idle - 1) {
-            const std::size_t lane = first_lane(idle), slot = g * kLanes + lane;
-            while (next < block.size && !block.is_open(next, tree)) ++next;
-            if (next == block.size) return;
-            client.start(slot, next);
-            groups.group[g].start(lane, block, next++, tree.apart);
+            if (!rays.start(groups.group[g], g * kLanes + first_lane(idle))) return;
         }
     };
     while (true) {
@@ -256,6 +284,13 @@ HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& c
         client.visit(std::span<const LeafVisit>(visits, count), groups);
         for (std::size_t g = 0; g < kGroups; ++g) groups.group[g].pop(at_leaf[g] & groups.group[g].active());
     }
+}
+
+/// The rays of the block from the root on. `void client.start(slot, i)`: ray i of the block now has the slot.
+template <typename Client>
+HWY_INLINE void trace_lanes(const KdTree& tree, const RayBlock& block, Client& client) {
+    BlockRays<Client> rays(block, client);
+    trace_rays(tree, rays, client);
 }
 
 }  // namespace rayuela::HWY_NAMESPACE

@@ -16,12 +16,11 @@ namespace rayuela::HWY_NAMESPACE {
 class Packet {
 public:
     /// Of rays first to first + kLanes of the block, those of them that there are.
-    HWY_INLINE Packet(const KdTree& tree, const RayBlock& block, std::size_t first) : block_(block), first_(first) {
+    HWY_INLINE Packet(const RayBlock& block, std::size_t first) : block_(block), first_(first) {
         const FloatTag d;
         hn::Store(hn::LoadU(d, block.limit + first), d, limit_);
         const Floats begin = load(block.begin), end = load(block.end);
-        const FloatMask there = tree.apart != 0 ? hn::Gt(end, hn::Set(d, -kInfinity)) : hn::Le(begin, end);
-        active_ = bits_of(d, hn::And(hn::FirstN(d, block.size - first), there));
+        active_ = bits_of(d, hn::And(hn::FirstN(d, block.size - first), hn::Le(begin, end)));
         if (active_ == 0) return;
         const Words axes = hn::LoadU(WordTag(), block.dominant_axis + first);
         const auto same = hn::Eq(axes, hn::Set(WordTag(), block.dominant_axis[first + first_lane(active_)]));
@@ -35,20 +34,17 @@ public:
 
     LaneBits active() const { return active_; }
 
-    /// Whether the rays are like each other: the same dominant axis, and origins not far apart in the tree.
+    /// Whether the rays are like each other: the same dominant axis, origins not far apart in the tree, slopes alike.
     HWY_INLINE bool coherent(const Bounds3& bounds) const {
         constexpr float kSpread = 1.0f / 8;
         if (!same_dominant_axis_ || std::popcount(active_) < static_cast<int>(kLanes / 2)) return false;
-        const FloatTag d;
-        const FloatMask there = mask_of(active_);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Floats origin = load(block_.origin[axis]);
-            const float lowest = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(there, origin, hn::Set(d, kInfinity))));
-            const float highest = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(there, origin, hn::Set(d, -kInfinity))));
             const auto component = static_cast<Vec3::length_type>(axis);
-            if (!(highest - lowest <= kSpread * (bounds.hi[component] - bounds.lo[component]))) return false;
+            if (!(spread(load(block_.origin[axis])) <= kSpread * (bounds.hi[component] - bounds.lo[component])))
+                return false;
         }
-        return true;
+        constexpr float kTurn = 1.0f / 2;
+        return spread(load(block_.shear_x)) <= kTurn && spread(load(block_.shear_y)) <= kTurn;
     }
 
     /// What begins behind `t` no longer counts for the lane's ray.
@@ -66,7 +62,6 @@ public:
         const KdNode* const nodes = tree.nodes.data();
         client.start_packet(first_, active_);
         const Floats pad = load(block_.pad);
-        if (tree.apart != 0) client.visit_packet(nodes[tree.apart], active_, *this);
         Floats begin = load(block_.begin), end = load(block_.end), limit = hn::Load(d, limit_);
         FloatMask here = hn::And(mask_of(active_), hn::Le(begin, hn::Min(end, limit)));
         if (hn::AllFalse(d, here)) return;
@@ -138,6 +133,15 @@ private:
     };
 
     HWY_INLINE Floats load(const float* of_block) const { return hn::LoadU(FloatTag(), of_block + first_); }
+    HWY_INLINE Floats load(const double* of_block) const { return demoted(of_block + first_); }
+    /// From the lowest to the highest among the rays that there are.
+    HWY_INLINE float spread(Floats values) const {
+        const FloatTag d;
+        const FloatMask there = mask_of(active_);
+        const Floats lowest = hn::MinOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, kInfinity)));
+        const Floats highest = hn::MaxOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, -kInfinity)));
+        return hn::GetLane(highest) - hn::GetLane(lowest);
+    }
 
     const RayBlock& block_;
     std::size_t first_;
@@ -153,7 +157,7 @@ private:
 template <typename Client>
 HWY_INLINE void trace_packets(const KdTree& tree, RayBlock& block, Client& client) {
     for (std::size_t first = 0; first < block.size; first += kLanes) {
-        Packet packet(tree, block, first);
+        Packet packet(block, first);
         if (!packet.coherent(tree.bounds)) continue;
         const LaneBits rays = packet.active();
         packet.trace(tree, client);

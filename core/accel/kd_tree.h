@@ -51,7 +51,7 @@ struct KdTree {
     std::vector<KdNode> nodes{KdNode()};
     std::vector<std::uint32_t> references;  ///< Primitives, leaf by leaf.
     Bounds3 bounds;                         ///< The root's cell.
-    /// A leaf of primitives that stand apart, for rays to test before they go to the root; 0 where there are none.
+    /// A leaf of primitives that stand apart, to be tested beside the tree; 0 where there are none.
     std::uint32_t apart = 0;
     std::uint64_t primitives = 0;  ///< That fit a tree.
 

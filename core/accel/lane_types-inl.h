@@ -13,6 +13,8 @@ namespace rayuela::HWY_NAMESPACE {
 
 /// Groups of lanes take turns: while one waits for memory the others compute.
 inline constexpr std::size_t kGroups = 3, kSlots = kGroups * kLanes;
+/// With those of a convoy behind them.
+inline constexpr std::size_t kAllSlots = kSlots + kLanes;
 
 /// Pairs of words in memory, one a lane, at which the lanes' indices point.
 struct WordPairs {

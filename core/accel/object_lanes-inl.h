@@ -10,7 +10,7 @@
 
 #include <hwy/cache_control.h>
 
-#include "core/accel/kd_packets-inl.h"
+#include "core/accel/kd_convoy-inl.h"
 #include "core/accel/sphere_lanes-inl.h"
 #include "core/accel/triangle_lanes-inl.h"
 #include "core/accel/triangle_packets-inl.h"
@@ -35,6 +35,17 @@ HWY_INLINE void go_on(std::size_t slot, std::size_t i, const RayBlock& block, st
     }
 }
 
+/// visit(block) for the blocks of a leaf.
+template <typename Visit>
+HWY_INLINE void each_block(const MeshTree& mesh, std::size_t first, std::size_t count, const Visit& visit) {
+    for (const float* data = mesh.blocks(first); count > 0;) {
+        const LeafBlock block(data);
+        visit(block);
+        data += block.size();
+        count -= block.triangles();
+    }
+}
+
 /// Rays of a block on their way through the mesh of one object.
 template <Query kQuery>
 class MeshClient {
@@ -54,6 +65,8 @@ public:
         triangles_.start(slot, i, t_end(rays_[id], hits_[id]));
     }
 
+    HWY_INLINE void move(std::size_t from, std::size_t to) { triangles_.move(from, to); }
+
     HWY_INLINE void prefetch(const LeafVisit& leaf) const {
         // As many vertices as triangles: what leaves mostly have. Four lines without a count to guess wrong.
         constexpr std::size_t kLine = 16, kOften = 4 * kLine;
@@ -66,7 +79,7 @@ public:
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {
         closer_ = 0;
         for (const LeafVisit& visit : visits) {
-            each_block(visit.first, visit.count, [&](const LeafBlock& block) HWY_ATTR {
+            each_block(mesh_, visit.first, visit.count, [&](const LeafBlock& block) HWY_ATTR {
                 for (std::size_t i = 0; i < block.triangles(); i += kLanes) {
                     if (triangles_.add(visit.slot, block, i)) decide();
                 }
@@ -87,7 +100,7 @@ public:
     HWY_INLINE void visit_packet(const KdNode& leaf, LaneBits lanes, Packet& packet) {
         LaneBits closer = 0;
         prefetch({.slot = 0, .first = leaf.first(), .count = leaf.count()});
-        each_block(leaf.first(), leaf.count(), [&](const LeafBlock& block) HWY_ATTR {
+        each_block(mesh_, leaf.first(), leaf.count(), [&](const LeafBlock& block) HWY_ATTR {
             packet_.test(block, mask_of(lanes), [&](std::size_t lane, std::size_t i, const ShapeHit& hit) HWY_ATTR {
                 keep_closer(hit, object_, block.name(i), hits_[block_.id[first_ + lane]]);
                 closer |= LaneBits{1} << lane;
@@ -100,17 +113,6 @@ public:
     }
 
 private:
-    /// visit(block) for the blocks of a leaf.
-    template <typename Visit>
-    HWY_INLINE void each_block(std::size_t first, std::size_t count, const Visit& visit) const {
-        for (const float* data = mesh_.blocks(first); count > 0;) {
-            const LeafBlock block(data);
-            visit(block);
-            data += block.size();
-            count -= block.triangles();
-        }
-    }
-
     HWY_INLINE void decide() {
         triangles_.decide([&](std::uint32_t slot, std::uint32_t triangle, const ShapeHit& hit) HWY_ATTR {
             keep_closer(hit, object_, triangle, hits_[block_.id[triangles_.ray(slot)]]);

@@ -55,9 +55,7 @@ struct RayBlock {
     alignas(64) float limit[kRoom];  ///< What begins behind it does not count.
 
     /// Whether ray i has to be traced through the tree.
-    bool is_open(std::size_t i, const KdTree& tree) const {
-        return tree.apart != 0 ? end[i] > -kInfinity : begin[i] <= end[i];
-    }
+    bool is_open(std::size_t i) const { return begin[i] <= end[i]; }
     void close(std::size_t i) {
         begin[i] = 0;
         end[i] = -kInfinity;
@@ -69,6 +67,16 @@ struct RayBlock {
     alignas(64) double shear_x[kRoom], shear_y[kRoom], inverse_z[kRoom];
     alignas(64) float depth[kRoom];  ///< Of the direction along z, with its sign.
 };
+
+/// kLanes doubles, rounded.
+HWY_INLINE Floats demoted(const double* values) {
+    const DoubleTag dd;
+    const hn::Rebind<float, DoubleTag> df;
+    alignas(64) float rounded[kLanes];
+    for (std::size_t i = 0; i < kLanes; i += kDoubles)
+        hn::Store(hn::DemoteTo(df, hn::LoadU(dd, values + i)), df, rounded + i);
+    return hn::Load(FloatTag(), rounded);
+}
 
 struct DoubleVec3 {
     Doubles x, y, z;

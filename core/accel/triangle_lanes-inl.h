@@ -68,6 +68,11 @@ public:
         ray_of_slot_[slot] = static_cast<std::uint32_t>(i);
         filter_[slot] = TriangleFilter::of(block_, i, rays_[block_.id[i]], t_max);
     }
+    /// What has a slot gets another one.
+    HWY_INLINE void move(std::size_t from, std::size_t to) {
+        ray_of_slot_[to] = ray_of_slot_[from];
+        filter_[to] = filter_[from];
+    }
     std::uint32_t ray(std::size_t slot) const { return ray_of_slot_[slot]; }
     HWY_INLINE void set_end(std::size_t slot, float t_max) { filter_[slot].set_end(t_max); }
 
@@ -160,8 +165,8 @@ private:
 
     const RayBlock& block_;
     std::span<const Ray> rays_;
-    std::uint32_t ray_of_slot_[kSlots];  ///< In the block.
-    TriangleFilter filter_[kSlots];
+    std::uint32_t ray_of_slot_[kAllSlots];  ///< In the block.
+    TriangleFilter filter_[kAllSlots];
     Found found_[kRoom];
     std::size_t size_ = 0;
     Candidates candidates_;

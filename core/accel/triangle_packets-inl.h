@@ -22,18 +22,25 @@ public:
     HWY_INLINE void start(std::size_t first, LaneBits lanes, std::span<const Hit> hits) {
         first_ = first;
         turn_ = Turn(block_.dominant_axis[first + first_lane(lanes)]);
+        alignas(64) float t_min[kLanes] = {}, t_max[kLanes] = {};
         for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
             const std::size_t lane = first_lane(rest);
             const std::uint32_t id = block_.id[first + lane];
-            shear_x_[lane] = static_cast<float>(block_.shear_x[first + lane]);
-            shear_y_[lane] = static_cast<float>(block_.shear_y[first + lane]);
-            depth_[lane] = block_.depth[first + lane];
-            set_end(lane, t_end(rays_[id], hits[id]));
+            t_min[lane] = rays_[id].t_min;
+            t_max[lane] = t_end(rays_[id], hits[id]);
         }
+        const FloatTag d;
+        hn::Store(demoted(block_.shear_x + first), d, shear_x_);
+        hn::Store(demoted(block_.shear_y + first), d, shear_y_);
+        const DepthRange range = depth_range(hn::LoadU(d, block_.depth + first), hn::LoadU(d, block_.depth_pad + first),
+                                             hn::Load(d, t_min), hn::Load(d, t_max));
+        hn::Store(range.begin, d, z_begin_);
+        hn::Store(range.end, d, z_end_);
     }
     HWY_INLINE void set_end(std::size_t lane, float t_max) {
         const std::size_t i = first_ + lane;
-        depth_range(depth_[lane], block_.depth_pad[i], rays_[block_.id[i]].t_min, t_max, z_begin_[lane], z_end_[lane]);
+        depth_range(block_.depth[i], block_.depth_pad[i], rays_[block_.id[i]].t_min, t_max, z_begin_[lane],
+                    z_end_[lane]);
     }
 
     /// Calls accept(lane, i, ShapeHit) for each ray in `here` that triangle i of n runs hits at t within [t_min, t_max].
@@ -122,7 +129,6 @@ private:
     std::size_t first_ = 0;
     Turn turn_{2};
     alignas(64) float shear_x_[kLanes] = {}, shear_y_[kLanes] = {}, z_begin_[kLanes] = {}, z_end_[kLanes] = {};
-    float depth_[kLanes] = {};
 };
 
 }  // namespace rayuela::HWY_NAMESPACE

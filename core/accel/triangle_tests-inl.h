@@ -109,6 +109,17 @@ HWY_INLINE void depth_range(float depth, float depth_pad, float t_min, float t_m
     z_end += depth_pad + kRounding * std::fabs(z_end);
 }
 
+struct DepthRange {
+    Floats begin, end;
+};
+/// The same of many rays.
+HWY_INLINE DepthRange depth_range(Floats depth, Floats depth_pad, Floats t_min, Floats t_max) {
+    const FloatTag d;
+    const Floats from = depth * t_min, to = depth * t_max, rounding = hn::Set(d, 4 * kUnitRoundoff);
+    const Floats begin = hn::Min(from, to), end = hn::Max(from, to);
+    return {begin - (depth_pad + rounding * hn::Abs(begin)), end + (depth_pad + rounding * hn::Abs(end))};
+}
+
 /// difference_of_products, the same to the bit.
 HWY_INLINE Doubles exact_difference(Doubles a, Doubles d, Doubles b, Doubles c) {
     const DoubleTag dd;

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace rayuela::test {
 namespace {
 
@@ -65,6 +67,33 @@ TEST_P(EachStructure, CancelledBuildGivesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(All, EachStructure,
                          ::testing::Values(kList, kKd, AccelSettings{.leaf_size = 1, .split = KdSplit::median}));
+
+/// They go through the tree together at first; the lamp is so large, and the way so long, that they part at different nodes.
+TEST(KdAccelerator, NeighboursToALampFindWhatTheListFinds) {
+    const std::vector<GeometryInstance> land{{make_grid(60, 0.3f), {}}};
+    const auto list = build(land, kList), kd = build(land, kKd);
+    const Bounds3 bounds = kd->bounds();
+    const Vec3 size = bounds.hi - bounds.lo;
+    Random random(5);
+    for (const float lamp : {0.0f, 0.1f, 1.0f, 2.0f}) {
+        std::vector<Ray> rays;
+        for (int i = 0; i < 256; ++i) {
+            const Vec3 middle = bounds.lo + (Vec3(0.5f) + random.in_cube(0.5f)) * size;
+            for (int k = 0; k < 16; ++k) {
+                const Vec3 origin = middle + random.in_cube(0.01f) * size;
+                rays.push_back({.origin = origin,
+                                .direction = bounds.hi + size + lamp * random.in_cube(1) - origin,
+                                .t_max = 0.9999f});
+            }
+        }
+        std::vector<std::uint8_t> expected(rays.size()), blocked(rays.size());
+        list->occluded(rays, expected);
+        kd->occluded(rays, blocked);
+        EXPECT_EQ(blocked, expected) << "lamp " << lamp;
+        EXPECT_GT(std::ranges::count(blocked, 1), 0);
+        EXPECT_GT(std::ranges::count(blocked, 0), 0);
+    }
+}
 
 TEST(KdAccelerator, MeshTreesAreSharedAndReused) {
     const MeshPtr ball = make_ball(8, 1, Vec3(0), 0, 1), grid = make_grid(4, 0);

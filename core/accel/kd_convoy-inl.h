@@ -1,0 +1,238 @@
+// Compiled once for each set of instructions (Google Highway), hence no plain include guard.
+#if defined(RAYUELA_CORE_ACCEL_KD_CONVOY_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYUELA_CORE_ACCEL_KD_CONVOY_INL_H_
+#undef RAYUELA_CORE_ACCEL_KD_CONVOY_INL_H_
+#else
+#define RAYUELA_CORE_ACCEL_KD_CONVOY_INL_H_
+#endif
+
+#include "core/accel/kd_packets-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rayuela::HWY_NAMESPACE {
+
+/// Neighbours of a block that ask only whether something is in their way. Where enough of them go through a node they do so
+/// together: it is loaded once for all. What only few have still to visit is left to them, to go on in lanes. A leaf is tested
+/// by each of them as by a ray in a lane, many leaves at once.
+class Convoy {
+public:
+    /// The rays that are to go on.
+    LaneBits left() const { return left_; }
+
+    /// Puts the ray of a lane into a slot of the group.
+    template <typename Client>
+    HWY_INLINE void hand_over(std::size_t lane, const RayBlock& block, LaneGroup& group, std::size_t slot,
+                              Client& client) {
+        left_ &= ~(LaneBits{1} << lane);
+        client.move(kSlots + lane, slot);
+        group.start(slot % kLanes, block, first_ + lane, {rest_[lane], size_[lane]});
+    }
+
+    /// Takes rays first to first + kLanes of the block through the tree, as far as they go together.
+    template <typename Client>
+    HWY_INLINE void trace(const KdTree& tree, const RayBlock& block, std::size_t first, Client& client) {
+        const FloatTag d;
+        const Floats begin = hn::LoadU(d, block.begin + first), end = hn::LoadU(d, block.end + first);
+        first_ = first;
+        left_ = 0;
+        active_ = bits_of(d, hn::And(hn::FirstN(d, block.size - first), hn::Le(begin, end)));
+        if (active_ == 0) return;
+        std::fill_n(size_, kLanes, 0);
+        for (LaneBits lanes = active_; lanes != 0; lanes &= lanes - 1)
+            client.start(kSlots + first_lane(lanes), first + first_lane(lanes));
+        descend(tree, block, begin, end, client);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) left_ |= (size_[lane] > 0 ? LaneBits{1} : 0) << lane;
+        left_ &= active_;
+    }
+
+    // As the slots of a client.
+    void set_limit(std::size_t, float) {}
+    void stop(std::size_t slot) { active_ &= ~(LaneBits{1} << (slot - kSlots)); }
+
+private:
+    struct Entry {
+        alignas(64) float begin[kLanes];
+        alignas(64) float end[kLanes];
+        std::uint32_t node;
+        LaneBits lanes;
+    };
+
+    template <typename Client>
+    HWY_NOINLINE void descend(const KdTree& tree, const RayBlock& block, Floats begin, Floats end, Client& client) {
+        const FloatTag d;
+        alignas(64) LaneAxes origins, inverses, overlaps;
+        LaneBits backwards[3];
+        bool above_first[3];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Floats inverse = hn::LoadU(d, block.inverse[axis] + first_);
+            hn::Store(inverse, d, inverses[axis]);
+            hn::Store(hn::LoadU(d, block.origin[axis] + first_), d, origins[axis]);
+            hn::Store(hn::LoadU(d, block.pad + first_) * hn::Abs(inverse), d, overlaps[axis]);
+            backwards[axis] = bits_of(d, hn::Lt(inverse, hn::Zero(d)));
+            above_first[axis] = 2 * std::popcount(backwards[axis] & active_) > std::popcount(active_);
+        }
+        const KdNode* const nodes = tree.nodes.data();
+        const Floats limit = hn::LoadU(d, block.limit + first_);
+        LaneBits here = active_;
+        std::size_t height = 0;
+        std::uint32_t at = 0;
+        full_ = false;
+        while (true) {
+            const KdNode node = nodes[at];
+            if (node.is_leaf()) {
+                if (visits_ + kLanes > kVisits) flush(client);
+                add_visits(node, here, client);
+            } else if (static_cast<std::size_t>(std::popcount(here)) < kFew && !full_) {
+                leave(here, at, begin, end);
+            } else {
+                const std::uint32_t children = node.children();
+                hwy::Prefetch(nodes + children);
+                const auto axis = static_cast<std::size_t>(node.axis());
+                const Floats inverse = hn::Load(d, inverses[axis]), overlap = hn::Load(d, overlaps[axis]);
+                const Floats distance = hn::Set(d, node.split()) - hn::Load(d, origins[axis]);
+                const Floats enter = hn::MulSub(distance, inverse, overlap),
+                             leave_at = hn::MulAdd(distance, inverse, overlap);
+                const LaneBits beyond = bits_of(d, hn::Gt(enter, hn::Min(end, limit)));
+                const LaneBits before = bits_of(d, hn::Lt(leave_at, begin));
+                const LaneBits to_far = here & ~beyond, to_near = here & ~(before & ~beyond);
+                const Floats near_end = hn::Min(leave_at, end), far_begin = hn::Max(enter, begin);
+                // The child that most rays meet first comes first; for the others it is the far one.
+                const std::uint32_t first = above_first[axis] ? 1 : 0, second = 1 - first;
+                const LaneBits common = first ? backwards[axis] : ~backwards[axis];
+                const LaneBits to_first = node.is_empty(first) ? 0 : (common & to_near) | (~common & to_far);
+                const LaneBits to_second = node.is_empty(second) ? 0 : (common & to_far) | (~common & to_near);
+                const FloatMask first_is_near = mask_of(common);
+                if (to_first != 0) {
+                    if (to_second != 0) {
+                        Entry& entry = stack_[height++];
+                        entry.node = children + second;
+                        entry.lanes = to_second;
+                        hn::Store(hn::IfThenElse(first_is_near, far_begin, begin), d, entry.begin);
+                        hn::Store(hn::IfThenElse(first_is_near, end, near_end), d, entry.end);
+                    }
+                    at = children + first;
+                    here = to_first;
+                    begin = hn::IfThenElse(first_is_near, begin, far_begin);
+                    end = hn::IfThenElse(first_is_near, near_end, end);
+                    continue;
+                }
+                if (to_second != 0) {
+                    at = children + second;
+                    here = to_second;
+                    begin = hn::IfThenElse(first_is_near, far_begin, begin);
+                    end = hn::IfThenElse(first_is_near, end, near_end);
+                    continue;
+                }
+            }
+            do {
+                if (height == 0) return flush(client);
+                const Entry& entry = stack_[--height];
+                at = entry.node;
+                begin = hn::Load(d, entry.begin);
+                end = hn::Load(d, entry.end);
+                here = entry.lanes & active_;
+            } while (here == 0);
+        }
+    }
+
+    HWY_INLINE void leave(LaneBits lanes, std::uint32_t node, Floats begin, Floats end) {
+        alignas(64) float begins[kLanes], ends[kLanes];
+        hn::Store(begin, FloatTag(), begins);
+        hn::Store(end, FloatTag(), ends);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const std::size_t lane = first_lane(lanes);
+            rest_[lane][size_[lane]++] = {begins[lane], ends[lane], std::bit_cast<float>(node), 0};
+            full_ |= size_[lane] == kMaxRest;
+        }
+    }
+
+    template <typename Client>
+    HWY_INLINE void add_visits(const KdNode& leaf, LaneBits lanes, Client& client) {
+        client.prefetch({.slot = 0, .first = leaf.first(), .count = leaf.count()});
+        for (; lanes != 0; lanes &= lanes - 1) {
+            visit_[visits_++] = {static_cast<std::uint32_t>(kSlots + first_lane(lanes)), leaf.first(), leaf.count()};
+        }
+    }
+    template <typename Client>
+    HWY_NOINLINE void flush(Client& client) {
+        client.visit(std::span<const LeafVisit>(visit_, visits_), *this);
+        visits_ = 0;
+    }
+
+    static constexpr std::size_t kFew = (kLanes + 1) / 2, kVisits = 4 * kLanes;
+
+    std::size_t first_ = 0;
+    LaneBits active_ = 0, left_ = 0;  ///< Without an answer; of those, to go on.
+    std::uint32_t size_[kLanes];
+    WayEntry rest_[kLanes][kMaxRest];  ///< What the rays have still to visit, nearest first.
+    bool full_ = false;                ///< One can be left no more.
+    LeafVisit visit_[kVisits];
+    std::size_t visits_ = 0;
+    Entry stack_[kKdMaxDepth + 1];
+};
+
+/// The rays of a block, as convoys leave them.
+template <typename Client>
+class ConvoyRays {
+public:
+    ConvoyRays(const KdTree& tree, const RayBlock& block, Client& client)
+        : tree_(tree), block_(block), client_(client) {}
+
+    HWY_INLINE bool start(LaneGroup& group, std::size_t slot) {
+        while (convoy_.left() == 0) {
+            if (next_ >= block_.size) return false;
+            convoy_.trace(tree_, block_, next_, client_);
+            next_ += kLanes;
+        }
+        convoy_.hand_over(first_lane(convoy_.left()), block_, group, slot, client_);
+        return true;
+    }
+
+private:
+    const KdTree& tree_;
+    const RayBlock& block_;
+    Client& client_;
+    std::size_t next_ = 0;
+    Convoy convoy_;
+};
+
+/// Whether rays first to first + kLanes of the block enter the tree close to each other.
+HWY_INLINE bool enter_close(const KdTree& tree, const RayBlock& block, std::size_t first) {
+    // Of the tree. With a 16th, rays from the walls around a ball took longer than alone.
+    constexpr float kPart = 1.0f / 32;
+    const FloatTag d;
+    const auto load = [&](const float* values) HWY_ATTR { return hn::LoadU(d, values + first); };
+    const Floats begin = load(block.begin);
+    const FloatMask open = hn::And(hn::FirstN(d, block.size - first), hn::Le(begin, load(block.end)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Floats at = load(block.origin[axis]) + begin / load(block.inverse[axis]);
+        const float low = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(open, at, hn::Set(d, kInfinity))));
+        const float high = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(open, at, hn::Set(d, -kInfinity))));
+        const auto component = static_cast<Vec3::length_type>(axis);
+        if (!(high - low <= kPart * (tree.bounds.hi[component] - tree.bounds.lo[component]))) return false;
+    }
+    return true;
+}
+
+/// Whether most neighbours of the block, by a sample, enter the tree close to each other and go the same way.
+HWY_INLINE bool go_together(const KdTree& tree, const RayBlock& block) {
+    constexpr std::size_t kEvery = 4 * kLanes;
+    int together = 0;
+    for (std::size_t first = 0; first < block.size; first += kEvery) {
+        const bool alike = Packet(block, first).coherent(tree.bounds) && enter_close(tree, block, first);
+        together += alike ? 1 : -1;
+    }
+    return together > 0;
+}
+
+/// trace_lanes of rays that ask only whether something is in their way, of which most go together at first.
+template <typename Client>
+HWY_INLINE void trace_convoys(const KdTree& tree, const RayBlock& block, Client& client) {
+    ConvoyRays<Client> rays(tree, block, client);
+    trace_rays(tree, rays, client);
+}
+
+}  // namespace rayuela::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
