@@ -5,10 +5,10 @@
 #include "app/ray_answers.h"
 #include "app/scaling.h"
 #include "app/text_table.h"
+#include "core/accel/parallel.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -24,8 +24,9 @@ template <typename Body>
 void in_batches(tbb::task_arena& arena, std::size_t rays, const Body& body) {
     constexpr std::size_t kBatch = RayAnswers::kBatch;
     arena.execute([&] {
-        tbb::parallel_for(std::size_t{0}, (rays + kBatch - 1) / kBatch,
-                          [&](std::size_t i) { body(i * kBatch, std::min(rays, (i + 1) * kBatch)); });
+        parallel_ranges((rays + kBatch - 1) / kBatch, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) body(i * kBatch, std::min(rays, (i + 1) * kBatch));
+        });
     });
 }
 

@@ -17,13 +17,15 @@ LAYERS = {
     "render": ["math", "shapes", "accel", "materials", "scene", "lights"],
 }
 
-# A library's headers, and the only folders that may include them.
+# A library's headers, and the only folders or files that may include them.
 LIBRARIES = {
     r"(GL|GLES\d?|EGL|KHR|GLFW|glad)/": ["ui", "tests/ui"],
     r"(imgui|implot|ImGuizmo|imgui_te_|imgui_test_engine/)": ["ui", "tests/ui", "cmake"],
     r"(tiny_gltf|tiny_obj|stb|OpenEXR/|Imf|Imath)": ["core/io", "tests"],
     r"nlohmann/": ["core/io", "ui", "app", "tests"],
     r"CLI/": ["app", "assets"],
+    # What starts parallel work; the others set its limits.
+    r"tbb/(parallel|task_group|flow_graph|blocked_range|partitioner)": ["core/accel/parallel.h"],
     r"tbb/|oneapi/": ["core/accel", "core/render", "core/io", "app", "tests", "assets"],
     r"hwy/": ["core/math", "core/accel", "core/lights", "core/render", "tests"],
     r"embree\d/": ["app", "tests"],
@@ -51,7 +53,7 @@ def problem(path, header):
             if layer != own and layer not in LAYERS.get(own, []):
                 return f"core/{own} may include only {', '.join(LAYERS.get(own, [])) or 'itself'}"
     for pattern, folders in LIBRARIES.items():
-        if re.match(pattern, header) and not any(path.startswith(folder + "/") for folder in folders):
+        if re.match(pattern, header) and not any(f"{path}/".startswith(f"{folder}/") for folder in folders):
             return f"only {', '.join(folders)} include this library"
     return None
 

@@ -3,10 +3,6 @@
 #include "core/accel/parallel.h"
 #include "core/render/clamp.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-
 #include <algorithm>
 #include <climits>
 #include <utility>
@@ -164,14 +160,9 @@ void Accumulation::add_to_all(const PathTracer& tracer, int samples, PassControl
         while (lacks_rounds() && add_round(*light_tracer, control)) {
         }
     }
-    const tbb::blocked_range<std::size_t> all(0, tiles_.size(), 1);
-    const auto add_to_tiles = [&](const tbb::blocked_range<std::size_t>& range) {
-        PathBatch& batch = batches_.local();
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            if (!is_finished(tiles_[i])) add_to_tile(tiles_[i], tracer, samples, control, batch);
-        }
-    };
-    tbb::parallel_for(all, add_to_tiles, tbb::simple_partitioner());
+    parallel_each(tiles_.size(), [&](std::size_t i) {
+        if (!is_finished(tiles_[i])) add_to_tile(tiles_[i], tracer, samples, control, batches_.local());
+    });
 }
 
 /// Stops the halves of tiles that have `samples` and need no more, and the rounds.

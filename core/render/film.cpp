@@ -1,8 +1,6 @@
 #include "core/render/film.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
+#include "core/accel/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,9 @@
 namespace rayuela {
 
 namespace {
+
+/// Pixels a task.
+constexpr std::size_t kGrain = 16384;
 
 double luminance(const Vec3d& c) {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
@@ -65,10 +66,10 @@ void Film::clear_splats() {
 }
 
 void Film::scale(const Vec3d& factor) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels_.size(), 16384), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) scale_sums(pixels_[i], factor);
+    parallel_ranges(pixels_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) scale_sums(pixels_[i], factor);
         if (splats_.empty()) return;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) scale_sums(splats_[i], factor);
+        for (std::size_t i = begin; i < end; ++i) scale_sums(splats_[i], factor);
     });
 }
 
@@ -120,8 +121,8 @@ double Film::variance_of_mean(std::size_t pixel) const {
 
 Image Film::image() const {
     Image image{width_, height_, std::vector<Vec4>(pixels_.size()), {}};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels_.size(), 16384), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) image.pixels[i] = Vec4(Color(mean(i)), 1.0f);
+    parallel_ranges(pixels_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) image.pixels[i] = Vec4(Color(mean(i)), 1.0f);
     });
     return image;
 }
@@ -143,8 +144,9 @@ double Film::relative_error() const {
         double error = 0;
         bool complete = true;
     };
-    const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, Sum sum) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+    const auto sum_of = [&](std::size_t begin, std::size_t end) {
+        Sum sum;
+        for (std::size_t i = begin; i < end; ++i) {
             const Pixel& p = pixels_[i];
             const auto na = static_cast<double>(p.count[0]), nb = static_cast<double>(p.count[1]);
             if (na == 0 || nb == 0 || (!splats_.empty() && (rounds_[0] == 0 || rounds_[1] == 0))) {
@@ -161,8 +163,7 @@ double Film::relative_error() const {
         return sum;
     };
     const auto join = [](const Sum& a, const Sum& b) { return Sum{a.error + b.error, a.complete && b.complete}; };
-    const tbb::blocked_range<std::size_t> all(0, pixels_.size(), 16384);
-    const Sum sum = tbb::parallel_deterministic_reduce(all, Sum{}, add_range, join);
+    const Sum sum = parallel_sum(0, pixels_.size(), kGrain, sum_of, join);
     return sum.complete ? sum.error / static_cast<double>(pixels_.size()) : 0;
 }
 

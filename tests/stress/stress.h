@@ -1,9 +1,7 @@
 #pragma once
 
+#include "core/accel/parallel.h"
 #include "tests/support/accel_scenes.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,21 +61,17 @@ inline std::uint64_t scaled(double full, double scale, std::uint64_t least = 1) 
 template <typename Body>
 Outcome for_batches(std::uint64_t count, std::uint64_t seed, std::uint64_t batch, const Body& body) {
     const std::uint64_t batches = (count + batch - 1) / batch;
-    return tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::uint64_t>(0, batches, 1), Outcome(),
-        [&](const tbb::blocked_range<std::uint64_t>& range, Outcome outcome) {
-            for (std::uint64_t i = range.begin(); i < range.end(); ++i) {
-                test::Random random((seed << 40) + i);
-                const std::uint64_t n = std::min(batch, count - i * batch);
-                outcome.cases += n;
-                body(random, i * batch, n, outcome);
-            }
-            return outcome;
-        },
-        [](Outcome a, const Outcome& b) {
-            a.add(b);
-            return a;
-        });
+    const auto outcome_of = [&](std::size_t i, std::size_t) {
+        test::Random random((seed << 40) + i);
+        Outcome outcome{.cases = std::min(batch, count - i * batch)};
+        body(random, i * batch, outcome.cases, outcome);
+        return outcome;
+    };
+    const auto join = [](Outcome a, const Outcome& b) {
+        a.add(b);
+        return a;
+    };
+    return parallel_sum(0, batches, 1, outcome_of, join);
 }
 
 /// body(random, outcome) for each case.
