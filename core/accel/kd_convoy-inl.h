@@ -56,92 +56,96 @@ private:
         std::uint32_t node;
         LaneBits lanes;
     };
+    /// A node, the rays that go through it, and where they are in it.
+    struct Way {
+        std::uint32_t node;
+        LaneBits lanes;
+        Floats begin, end;
+    };
+
+    HWY_INLINE void prepare(const RayBlock& block) {
+        const FloatTag d;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Floats inverse = hn::LoadU(d, block.inverse[axis] + first_);
+            hn::Store(inverse, d, inverse_[axis]);
+            hn::Store(hn::LoadU(d, block.origin[axis] + first_), d, origin_[axis]);
+            hn::Store(hn::LoadU(d, block.pad + first_) * hn::Abs(inverse), d, overlap_[axis]);
+            backwards_[axis] = bits_of(d, hn::Lt(inverse, hn::Zero(d)));
+            above_first_[axis] = 2 * std::popcount(backwards_[axis] & active_) > std::popcount(active_);
+        }
+        hn::Store(hn::LoadU(d, block.limit + first_), d, limit_);
+    }
 
     template <typename Client>
     HWY_NOINLINE void descend(const KdTree& tree, const RayBlock& block, Floats begin, Floats end, Client& client) {
-        const FloatTag d;
-        alignas(64) LaneAxes origins, inverses, overlaps;
-        LaneBits backwards[3];
-        bool above_first[3];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Floats inverse = hn::LoadU(d, block.inverse[axis] + first_);
-            hn::Store(inverse, d, inverses[axis]);
-            hn::Store(hn::LoadU(d, block.origin[axis] + first_), d, origins[axis]);
-            hn::Store(hn::LoadU(d, block.pad + first_) * hn::Abs(inverse), d, overlaps[axis]);
-            backwards[axis] = bits_of(d, hn::Lt(inverse, hn::Zero(d)));
-            above_first[axis] = 2 * std::popcount(backwards[axis] & active_) > std::popcount(active_);
-        }
+        prepare(block);
         const KdNode* const nodes = tree.nodes.data();
-        const Floats limit = hn::LoadU(d, block.limit + first_);
-        LaneBits here = active_;
-        std::size_t height = 0;
-        std::uint32_t at = 0;
+        Way here{0, active_, begin, end};
         full_ = false;
         while (true) {
-            const KdNode node = nodes[at];
+            const KdNode node = nodes[here.node];
             if (node.is_leaf()) {
                 if (visits_ + kLanes > kVisits) flush(client);
-                add_visits(node, here, client);
-            } else if (static_cast<std::size_t>(std::popcount(here)) < kFew && !full_) {
-                leave(here, at, begin, end);
+                add_visits(node, here.lanes, client);
+            } else if (static_cast<std::size_t>(std::popcount(here.lanes)) < kFew && !full_) {
+                leave(here);
             } else {
-                const std::uint32_t children = node.children();
-                hwy::Prefetch(nodes + children);
-                const auto axis = static_cast<std::size_t>(node.axis());
-                const Floats inverse = hn::Load(d, inverses[axis]), overlap = hn::Load(d, overlaps[axis]);
-                const Floats distance = hn::Set(d, node.split()) - hn::Load(d, origins[axis]);
-                const Floats enter = hn::MulSub(distance, inverse, overlap),
-                             leave_at = hn::MulAdd(distance, inverse, overlap);
-                const LaneBits beyond = bits_of(d, hn::Gt(enter, hn::Min(end, limit)));
-                const LaneBits before = bits_of(d, hn::Lt(leave_at, begin));
-                const LaneBits to_far = here & ~beyond, to_near = here & ~(before & ~beyond);
-                const Floats near_end = hn::Min(leave_at, end), far_begin = hn::Max(enter, begin);
-                // The child that most rays meet first comes first; for the others it is the far one.
-                const std::uint32_t first = above_first[axis] ? 1 : 0, second = 1 - first;
-                const LaneBits common = first ? backwards[axis] : ~backwards[axis];
-                const LaneBits to_first = node.is_empty(first) ? 0 : (common & to_near) | (~common & to_far);
-                const LaneBits to_second = node.is_empty(second) ? 0 : (common & to_far) | (~common & to_near);
-                const FloatMask first_is_near = mask_of(common);
-                if (to_first != 0) {
-                    if (to_second != 0) {
-                        Entry& entry = stack_[height++];
-                        entry.node = children + second;
-                        entry.lanes = to_second;
-                        hn::Store(hn::IfThenElse(first_is_near, far_begin, begin), d, entry.begin);
-                        hn::Store(hn::IfThenElse(first_is_near, end, near_end), d, entry.end);
-                    }
-                    at = children + first;
-                    here = to_first;
-                    begin = hn::IfThenElse(first_is_near, begin, far_begin);
-                    end = hn::IfThenElse(first_is_near, near_end, end);
-                    continue;
-                }
-                if (to_second != 0) {
-                    at = children + second;
-                    here = to_second;
-                    begin = hn::IfThenElse(first_is_near, far_begin, begin);
-                    end = hn::IfThenElse(first_is_near, end, near_end);
+                hwy::Prefetch(nodes + node.children());
+                const auto [first, second] = split(node, here);
+                if (first.lanes != 0 && second.lanes != 0) push(second);
+                if ((first.lanes | second.lanes) != 0) {
+                    here = first.lanes != 0 ? first : second;
                     continue;
                 }
             }
             do {
-                if (height == 0) return flush(client);
-                const Entry& entry = stack_[--height];
-                at = entry.node;
-                begin = hn::Load(d, entry.begin);
-                end = hn::Load(d, entry.end);
-                here = entry.lanes & active_;
-            } while (here == 0);
+                if (height_ == 0) return flush(client);
+                here = pop();
+            } while (here.lanes == 0);
         }
     }
 
-    HWY_INLINE void leave(LaneBits lanes, std::uint32_t node, Floats begin, Floats end) {
-        alignas(64) float begins[kLanes], ends[kLanes];
-        hn::Store(begin, FloatTag(), begins);
-        hn::Store(end, FloatTag(), ends);
-        for (; lanes != 0; lanes &= lanes - 1) {
+    /// What goes through the children: the one that most rays meet first comes first; for the others it is the far one.
+    HWY_INLINE std::pair<Way, Way> split(const KdNode& node, const Way& here) const {
+        const FloatTag d;
+        const auto axis = static_cast<std::size_t>(node.axis());
+        const Floats inverse = hn::Load(d, inverse_[axis]), overlap = hn::Load(d, overlap_[axis]);
+        const Floats distance = hn::Set(d, node.split()) - hn::Load(d, origin_[axis]);
+        const Floats enter = hn::MulSub(distance, inverse, overlap), leave = hn::MulAdd(distance, inverse, overlap);
+        const LaneBits beyond = bits_of(d, hn::Gt(enter, hn::Min(here.end, hn::Load(d, limit_))));
+        const LaneBits before = bits_of(d, hn::Lt(leave, here.begin));
+        const LaneBits to_far = here.lanes & ~beyond, to_near = here.lanes & ~(before & ~beyond);
+        const Floats near_end = hn::Min(leave, here.end), far_begin = hn::Max(enter, here.begin);
+        const std::uint32_t first = above_first_[axis] ? 1 : 0, second = 1 - first;
+        const LaneBits common = first ? backwards_[axis] : ~backwards_[axis];
+        const FloatMask first_is_near = mask_of(common);
+        return {
+            {node.children() + first, node.is_empty(first) ? 0 : (common & to_near) | (~common & to_far),
+             hn::IfThenElse(first_is_near, here.begin, far_begin), hn::IfThenElse(first_is_near, near_end, here.end)},
+            {node.children() + second, node.is_empty(second) ? 0 : (common & to_far) | (~common & to_near),
+             hn::IfThenElse(first_is_near, far_begin, here.begin), hn::IfThenElse(first_is_near, here.end, near_end)}};
+    }
+
+    HWY_INLINE void push(const Way& way) {
+        Entry& entry = stack_[height_++];
+        entry.node = way.node;
+        entry.lanes = way.lanes;
+        hn::Store(way.begin, FloatTag(), entry.begin);
+        hn::Store(way.end, FloatTag(), entry.end);
+    }
+    HWY_INLINE Way pop() {
+        const Entry& entry = stack_[--height_];
+        return {entry.node, entry.lanes & active_, hn::Load(FloatTag(), entry.begin), hn::Load(FloatTag(), entry.end)};
+    }
+
+    /// To be gone by each ray alone.
+    HWY_INLINE void leave(const Way& way) {
+        alignas(64) float begin[kLanes], end[kLanes];
+        hn::Store(way.begin, FloatTag(), begin);
+        hn::Store(way.end, FloatTag(), end);
+        for (LaneBits lanes = way.lanes; lanes != 0; lanes &= lanes - 1) {
             const std::size_t lane = first_lane(lanes);
-            rest_[lane][size_[lane]++] = {begins[lane], ends[lane], std::bit_cast<float>(node), 0};
+            rest_[lane][size_[lane]++] = {begin[lane], end[lane], std::bit_cast<float>(way.node), 0};
             full_ |= size_[lane] == kMaxRest;
         }
     }
@@ -162,6 +166,10 @@ private:
     static constexpr std::size_t kFew = (kLanes + 1) / 2, kVisits = 4 * kLanes;
 
     std::size_t first_ = 0;
+    alignas(64) LaneAxes origin_, inverse_, overlap_;
+    alignas(64) float limit_[kLanes];
+    LaneBits backwards_[3];
+    bool above_first_[3];             ///< Which child comes first.
     LaneBits active_ = 0, left_ = 0;  ///< Without an answer; of those, to go on.
     std::uint32_t size_[kLanes];
     WayEntry rest_[kLanes][kMaxRest];  ///< What the rays have still to visit, nearest first.
@@ -169,6 +177,7 @@ private:
     LeafVisit visit_[kVisits];
     std::size_t visits_ = 0;
     Entry stack_[kKdMaxDepth + 1];
+    std::size_t height_ = 0;
 };
 
 /// The rays of a block, as convoys leave them.

@@ -14,7 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/accel/object_lanes-inl.h"
+#include "core/accel/mesh_apart-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -27,12 +27,14 @@ std::uint64_t count_visits(const MeshTree& mesh, const TracedObject& object, std
     RayBlock block;
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
         RayBlockWriter(rays, hits, &object, mesh.tree.bounds, mesh.bounds).write({&i, 1}, block);
+        if (mesh.tree.apart != 0) ++visits;
+        sweep_apart<Query::closest>(mesh, 0, block, rays, hits);
+        if (!block.is_open(0)) continue;
         MeshClient<Query::closest> client(mesh, 0, block, rays, hits);
         LaneGroups lanes;
         LaneGroup& group = lanes.group[0];
-        if (!block.is_open(0, mesh.tree)) continue;
         client.start(0, 0);
-        group.start(0, block, 0, mesh.tree.apart);
+        group.start(0, block, 0);
         while (group.active() != 0) {
             while (group.step(nodes), group.at_leaf().any == 0) ++visits;
             const LeafVisit visit{0, group.first(0), group.count(0)};
@@ -60,6 +62,7 @@ double trace_seconds(const MeshTree& mesh, const TracedObject& object, std::span
         if (!padded) std::fill(std::begin(block.pad), std::end(block.pad), 0.0f);
         MeshClient<Query::closest> client(mesh, 0, block, rays, hits);
         const std::clock_t start = std::clock();
+        sweep_apart<Query::closest>(mesh, 0, block, rays, hits);
         trace_packets(mesh.tree, block, client);
         trace_lanes(mesh.tree, block, client);
         clocks += static_cast<double>(std::clock() - start);
