@@ -29,20 +29,25 @@ import sys
 from stripped_features import FEATURES
 
 LANES, PACKETS, TRIANGLES = "core/accel/kd_lanes-inl.h", "core/accel/kd_packets-inl.h", "core/accel/triangle_tests-inl.h"
-FEW, SPHERES = "core/accel/few_objects-inl.h", "core/accel/sphere_tests-inl.h"
+FEW, PAIRS = "core/accel/few_objects-inl.h", "core/accel/pair_tests-inl.h"
+CONVOYS, SPHERES = "core/accel/kd_convoy-inl.h", "core/accel/sphere_tests-inl.h"
 PADS = [
     (LANES, "const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));", ""),
     (LANES, "enter = hn::MulSub(distance, inverse, pad), leave = hn::MulAdd(distance, inverse, pad);",
      "enter = hn::Mul(distance, inverse), leave = enter;"),
     (PACKETS, "enter = middle - overlap, leave = middle + overlap;", "enter = middle, leave = middle;\n(void)overlap;"),
+    (CONVOYS, "enter = hn::MulSub(distance, inverse, overlap), leave = hn::MulAdd(distance, inverse, overlap);",
+     "enter = hn::Mul(distance, inverse), leave = enter;\n(void)overlap;"),
     (TRIANGLES, "const Floats slack = hn::MulAdd(ray.slack.slope, extent, ray.slack.offset);",
      "const Floats slack = hn::Zero(FloatTag());"),
     (TRIANGLES, "z_begin -= depth_pad + kRounding * std::fabs(z_begin);", "(void)depth_pad, (void)kRounding;"),
     (TRIANGLES, "z_end += depth_pad + kRounding * std::fabs(z_end);", ""),
     (TRIANGLES, "if (HWY_LIKELY(hn::AllTrue(dd, hn::And(plain(u, cx_by), hn::And(plain(v, ax_cy), plain(w, bx_ay))))))",
      "(void)dd, (void)plain;\n    if (true)"),
-    (FEW, "begin - (least + rounding * hn::Abs(begin)),", "begin,"),
-    (FEW, "end + (least + rounding * hn::Abs(end))};", "((void)least, (void)rounding, end)};"),
+    (TRIANGLES, "return {begin - (depth_pad + rounding * hn::Abs(begin)), end + (depth_pad + rounding * hn::Abs(end))};",
+     "return (void)depth_pad, (void)rounding, DepthRange{begin, end};"),
+    (PAIRS, "const Floats slack = hn::MulAdd(rays_.slack.slope, hn::Set(d, pair.extent), rays_.slack.offset);",
+     "const Floats slack = hn::Zero(d);"),
     (FEW, "hn::Min(lo, hi) - overlap[axis]", "hn::Min(lo, hi)"),
     (FEW, "hn::Max(lo, hi) + overlap[axis]", "hn::Max(lo, hi)"),
     (SPHERES, "const Floats reach = sphere.radius + hn::Set(d, 8) * ray.pad;", "const Floats reach = sphere.radius;"),

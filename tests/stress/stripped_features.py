@@ -96,8 +96,7 @@ MANY_LAMPS = [
     (LAMPS, "return lamps_.count == 1 ? all_lanes(row[0]) : looked_up(FloatTag(), row, lamp_);", "return all_lanes(row[0]);"),
 ]
 SPHERES = [
-    (FEW, "                if (leaf_.spheres > 0) add_spheres(rays);\n", ""),
-    (FEW, "            decide_triangles(axis);\n            decide_spheres();\n", "            decide_triangles(axis);\n"),
+    (FEW, "        if (leaf_.spheres > 0) {\n", "        if (false) {\n"),
     (LAMPS, "        if (!lamps_.any_flat) return sphere_points(of(lamps_.origin), of(lamps_.size), p, u);\n", ""),
     (LAMPS, "        if (!lamps_.any_sphere) return flat;\n", "        if (true) return flat;\n"),
     (SURFACES, "} else if (entry.sphere && !wants_uv(i)) {", "} else if (false) {"),
@@ -116,14 +115,13 @@ MESHES = [
     (SURFACES, "        if (has_meshes_) {", "        if (false) {"),
 ]
 BOXES_AND_MESHES = [change for change in MESHES if change[0] in (KERNELS, SURFACES)] + [
-    (FEW, "            if (leaf_.others > 0) each_group(axis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });\n", ""),
+    (FEW, "        if (leaf_.others > 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });\n", ""),
     (CLIENT, "            test_others(triangles_.ray(visit.slot), leaf);\n", ""),
     (CLIENT, "        for (LaneBits rest = leaf.others > 0 ? lanes : 0; rest != 0; rest &= rest - 1)\n"
              "            test_others(first_ + first_lane(rest), leaf);\n", ""),
 ]
 FLAT_SHAPES = [
-    (FEW, "                if (leaf_.triangles > 0) add_triangles(rays, axis);\n", ""),
-    (FEW, "            decide_triangles(axis);\n            decide_spheres();\n", "            decide_spheres();\n"),
+    (FEW, "const std::size_t pairs = scene_.leaves->apart_pairs.pairs.size();", "const std::size_t pairs = 0;"),
     (CLIENT, "            add_triangles(visit.slot, leaf);\n", ""),
     (CLIENT, "        decide_triangles();\n        decide_spheres();\n", "        decide_spheres();\n"),
     (CLIENT, "        packet_.test(\n            runs, leaf.triangles, mask_of(lanes),", "        packet_.test(\n            runs, 0, mask_of(lanes),"),
