@@ -115,6 +115,7 @@ ObjectLeaves make_object_leaves(std::span<const TracedObject> objects, std::span
     result.apart = writer.write(apart);
     result.apart_corners = writer.padded_corners();
     result.apart_pairs = pair_triangles(writer.corners());
+    result.triangle_runs = {};
     if (tree) result.leaves.resize(tree->references.size());
     for (const KdNode& node : tree ? std::span(tree->nodes) : std::span<const KdNode>()) {
         if (!node.is_leaf() || node.count() == 0) continue;

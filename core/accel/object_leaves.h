@@ -29,7 +29,7 @@ struct ObjectTriangle {
 struct ObjectLeaves {
     ObjectLeaf apart;                  ///< Begins all that follows but `leaves`.
     std::vector<ObjectLeaf> leaves;    ///< One a reference of the tree; that of a leaf stands at its first().
-    std::vector<float> triangle_runs;  ///< See triangle_runs.h.
+    std::vector<float> triangle_runs;  ///< See triangle_runs.h. Those apart are in pairs instead.
     std::vector<ObjectTriangle> triangles;
     /// Of those apart: three corners, each with a float that says nothing.
     std::vector<std::array<float, 12>> apart_corners;
