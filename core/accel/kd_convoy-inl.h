@@ -215,10 +215,8 @@ HWY_INLINE bool enter_close(const KdTree& tree, const RayBlock& block, std::size
     const FloatMask open = hn::And(hn::FirstN(d, block.size - first), hn::Le(begin, load(block.end)));
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Floats at = load(block.origin[axis]) + begin / load(block.inverse[axis]);
-        const float low = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(open, at, hn::Set(d, kInfinity))));
-        const float high = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(open, at, hn::Set(d, -kInfinity))));
         const auto component = static_cast<Vec3::length_type>(axis);
-        if (!(high - low <= kPart * (tree.bounds.hi[component] - tree.bounds.lo[component]))) return false;
+        if (!(spread(at, open) <= kPart * (tree.bounds.hi[component] - tree.bounds.lo[component]))) return false;
     }
     return true;
 }

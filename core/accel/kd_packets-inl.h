@@ -11,6 +11,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
+/// From the lowest to the highest of those `there`.
+HWY_INLINE float spread(Floats values, FloatMask there) {
+    const FloatTag d;
+    const Floats lowest = hn::MinOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, kInfinity)));
+    const Floats highest = hn::MaxOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, -kInfinity)));
+    return hn::GetLane(highest) - hn::GetLane(lowest);
+}
+
 /// Rays of a block that stand side by side and go through a tree together, one node after the other, as long as it lies on
 /// the way of one of them. Worth it for rays that stay together: from the camera, and from there to a lamp.
 class Packet {
@@ -134,14 +142,7 @@ private:
 
     HWY_INLINE Floats load(const float* of_block) const { return hn::LoadU(FloatTag(), of_block + first_); }
     HWY_INLINE Floats load(const double* of_block) const { return demoted(of_block + first_); }
-    /// From the lowest to the highest among the rays that there are.
-    HWY_INLINE float spread(Floats values) const {
-        const FloatTag d;
-        const FloatMask there = mask_of(active_);
-        const Floats lowest = hn::MinOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, kInfinity)));
-        const Floats highest = hn::MaxOfLanes(d, hn::IfThenElse(there, values, hn::Set(d, -kInfinity)));
-        return hn::GetLane(highest) - hn::GetLane(lowest);
-    }
+    HWY_INLINE float spread(Floats values) const { return HWY_NAMESPACE::spread(values, mask_of(active_)); }
 
     const RayBlock& block_;
     std::size_t first_;
