@@ -15,19 +15,21 @@ namespace {
 constexpr int kTileSide = 32;
 /// Of the tiles that are blocks of adaptive sampling: smaller ones follow the noise more closely, but know it less well.
 constexpr int kAdaptiveTileSide = 16;
-/// Paths in flight that the intersection kernels want; smaller tiles carry several samples at once.
-constexpr std::size_t kBatchPaths = 1024;
+/// Paths in flight that the intersection kernels want: where as many samples are asked for, tiles carry several at once.
+constexpr std::size_t kBatchPaths = 4096;
 /// Paths from lamps that are traced together.
 constexpr std::uint32_t kLightPaths = 4096;
 
-/// Calls use(x, y) for the pixels of a tile, square by square: rays that the kernels take together are close to each other.
+/// Calls use(x, y) for the pixels of a tile, square by square, and so within the squares: rays that the kernels take together
+/// are close to each other, be they of 4 x 4 pixels or four each of 2 x 2.
 template <typename Tile, typename Use>
 void for_each_pixel(const Tile& tile, const Use& use) {
     constexpr int kSquare = 4;
     for (int top = tile.y0; top < tile.y1; top += kSquare) {
         for (int left = tile.x0; left < tile.x1; left += kSquare) {
-            for (int y = top; y < std::min(top + kSquare, tile.y1); ++y) {
-                for (int x = left; x < std::min(left + kSquare, tile.x1); ++x) use(x, y);
+            for (int i = 0; i < kSquare * kSquare; ++i) {
+                const int x = left + (i & 1) + (i >> 1 & 2), y = top + (i >> 1 & 1) + (i >> 2 & 2);
+                if (x < tile.x1 && y < tile.y1) use(x, y);
             }
         }
     }
@@ -264,18 +266,17 @@ bool Accumulation::add_round(const LightTracer& tracer, PassControl& control) {
 void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples, PassControl& control,
                                PathBatch& batch) {
     if (tile.samples == 0) clear(tile);
-    const int samples_at_once = static_cast<int>(std::max<std::size_t>(1, kBatchPaths / tile.pixels()));
+    const int samples_at_once = static_cast<int>((kBatchPaths + tile.pixels() - 1) / tile.pixels());
     while (tile.samples < samples) {
         if (control.stops()) return;
         int end = std::min(samples, tile.samples + samples_at_once);
         if (adapts()) end = std::min(end, end_of_half(tile.samples));
         batch.ids.clear();
-        for (int sample = tile.samples; sample < end; ++sample) {
-            for_each_pixel(tile, [&](int x, int y) {
-                batch.ids.push_back(
-                    {static_cast<std::uint32_t>(y * film_.width() + x), static_cast<std::uint32_t>(sample)});
-            });
-        }
+        for_each_pixel(tile, [&](int x, int y) {
+            const auto pixel = static_cast<std::uint32_t>(y * film_.width() + x);
+            for (int sample = tile.samples; sample < end; ++sample)
+                batch.ids.push_back({pixel, static_cast<std::uint32_t>(sample)});
+        });
         const std::uint64_t rays_before = batch.counts.rays + batch.counts.shadow_rays;
         if (!tracer.trace(batch, control.cancelled)) return;
         add_to_film(tile, batch, tracer);
@@ -292,6 +293,7 @@ void Accumulation::add_to_tile(Tile& tile, const PathTracer& tracer, int samples
 void Accumulation::add_to_film(Tile& tile, const PathBatch& batch, const PathTracer& tracer) {
     const bool plain =
         !adapts() && options_.clamp == 0 && tile.adaptive.shows_all_from(static_cast<std::uint32_t>(tile.samples));
+    const std::size_t samples = batch.ids.size() / tile.pixels();
     for (std::size_t i = 0; i < batch.ids.size(); ++i) {
         const auto [pixel, sample] = batch.ids[i];
         if (sample == 0) object_ids_[pixel] = tracer.object_id(batch.first_object[i]);
@@ -301,7 +303,7 @@ void Accumulation::add_to_film(Tile& tile, const PathBatch& batch, const PathTra
             continue;
         }
         const Color radiance = options_.clamp > 0 ? clamped(traced, options_.clamp) : traced;
-        if (adapts()) tile.adaptive.measure(i % tile.pixels(), sample, luminance(radiance));
+        if (adapts()) tile.adaptive.measure(i / samples, sample, luminance(radiance));
         if (!tile.adaptive.shows(sample)) continue;
         if (radiance != traced && !rejection(traced))
             tile.clamped[sample_half(sample)] += static_cast<double>(luminance(traced) - luminance(radiance));
