@@ -50,12 +50,17 @@ inline Vec2 cos_sin_turns(float turns) {
     return quarters < 2 ? across : -across;
 }
 
-/// Within the cone about +z of 1 - cos(half angle) = `one_minus_cos`, in (0, 2]: 2 is the sphere, 1 the hemisphere. Written
-/// so that tiny cones keep their precision.
+/// A point of the unit disk on the cap about +z of 1 - cos(half angle) = `one_minus_cos`, in (0, 2], by Lambert's map of equal
+/// areas: the rim of the disk is that of the cap. Written so that tiny caps keep their precision.
+inline Vec3 disk_to_cap(const Vec2& d, float one_minus_cos) {
+    const float x = glm::dot(d, d) * one_minus_cos;
+    return Vec3(d * std::sqrt(one_minus_cos * std::max(0.0f, 2 - x)), 1 - x);
+}
+
+/// Within the cone about +z of 1 - cos(half angle) = `one_minus_cos`, in (0, 2]: 2 is the sphere, 1 the hemisphere. Not in
+/// polar coordinates: strata stay compact.
 inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
-    const float x = u.x * one_minus_cos;
-    const float sine = std::sqrt(std::max(0.0f, x * (2 - x)));
-    return Vec3(sine * cos_sin_turns(u.y), 1 - x);
+    return disk_to_cap(sample_concentric_disk(u), one_minus_cos);
 }
 
 inline float uniform_cone_pdf(float one_minus_cos) {

@@ -143,11 +143,15 @@ HWY_INLINE Vec2Lanes cos_sin_turns(Floats turns) {
             hn::IfThenElse(beyond_half, hn::Neg(across.y), across.y)};
 }
 
+HWY_INLINE Vec3Lanes disk_to_cap(const Vec2Lanes& disk, Floats one_minus_cos) {
+    const Floats zero = hn::Zero(FloatTag()), two = all_lanes(2.0f);
+    const Floats x = (disk.x * disk.x + disk.y * disk.y) * one_minus_cos;
+    const Floats scale = hn::Sqrt(one_minus_cos * hn::Max(zero, two - x));
+    return {disk.x * scale, disk.y * scale, all_lanes(1.0f) - x};
+}
+
 HWY_INLINE Vec3Lanes sample_uniform_cone(const Vec2Lanes& u, Floats one_minus_cos) {
-    const Floats x = u.x * one_minus_cos;
-    const Floats sine = hn::Sqrt(hn::Max(hn::Zero(FloatTag()), x * (all_lanes(2.0f) - x)));
-    const Vec2Lanes around = cos_sin_turns(u.y);
-    return {sine * around.x, sine * around.y, all_lanes(1.0f) - x};
+    return disk_to_cap(sample_concentric_disk(u), one_minus_cos);
 }
 
 HWY_INLINE Vec2Lanes sample_uniform_triangle(const Vec2Lanes& u) {

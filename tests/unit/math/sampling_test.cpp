@@ -102,8 +102,8 @@ TEST(Sampling, TinyConesKeepTheirPrecision) {
     for (const double angle : {1e-6, 1e-4, 0.01, 1.0, 1.5}) {
         const auto one_minus_cos = static_cast<float>(2 * std::pow(std::sin(angle / 2), 2));
         for (const float u : {0.1f, 0.5f, 0.9f}) {
-            const Vec3 w = sample_uniform_cone(Vec2(u, 0.3f), one_minus_cos);
-            const long double x = static_cast<long double>(u) * one_minus_cos;
+            const Vec3 w = sample_uniform_cone(Vec2(0.5f + u / 2, 0.5f), one_minus_cos);
+            const long double x = static_cast<long double>(u) * u * one_minus_cos;
             EXPECT_NEAR(std::hypot(w.x, w.y) / static_cast<double>(std::sqrt(x * (2 - x))), 1, 1e-6);
         }
         EXPECT_NEAR(uniform_cone_pdf(one_minus_cos) * (2 * M_PI * 2 * std::pow(std::sin(angle / 2), 2)), 1, 1e-6);
