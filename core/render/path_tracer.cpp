@@ -57,9 +57,11 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       parts_seed_(static_cast<std::uint32_t>(mix_bits(scene.scene().render.seed + 0x9e3779b97f4a7c15u))),
       rr_start_(scene.scene().render.rr_start.value_or(kDefaultRouletteStart)),
       light_sampling_(options.light_sampling && scene.features().light_sampling()),
+      sees_sky_(scene.features().environment || !options.shortcuts.no_sky),
       roulette_throughput_(roulette_throughput(scene, light_sampling_)) {
     if (options.light_tracing && options.light_sampling && scene.emission())
         light_tracer_.emplace(scene, camera_, width, height);
+    may_aim_ = light_tracer_ && light_tracer_->lamps_are_small();
 }
 
 bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
@@ -96,23 +98,29 @@ void PathTracer::camera_rays(PathBatch& batch) const {
     batch.rays.resize(n);
     batch.radiance.assign(n, Color(0));
     batch.first_object.assign(n, kNone);
-    batch.filter_numbers.resize(n);
-    batch.lens_numbers.resize(n);
+    batch.positions.resize(n);
     for (std::size_t i = 0; i < n; ++i)
         batch.samplers[i] = Sampler(settings.sampler, settings.seed, batch.ids[i].pixel, batch.ids[i].sample);
-    draw_2d(batch.samplers, kFilter, batch.filter_numbers);
-    const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;
-    if (lens_extends) draw_2d(batch.samplers, kLens, batch.lens_numbers);
+    draw_2d(batch.samplers, kFilter, batch.positions);
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint32_t pixel = batch.ids[i].pixel;
         const auto width = static_cast<std::uint32_t>(width_);
         const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
-        const Vec2 position = (centre + sample_filter(filter, batch.filter_numbers[i])) * pixel_size;
-        const Vec2 lens = lens_extends ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
+        batch.positions[i] = (centre + sample_filter(filter, batch.positions[i])) * pixel_size;
         batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
-        camera_.write_ray(position, lens, batch.rays[i]);
     }
+    draw_lens(batch);
+    camera_.rays(batch.positions, batch.lens, batch.rays);
     batch.counts.paths += n;
+}
+
+/// Draws points on the lens, where it has extent.
+void PathTracer::draw_lens(PathBatch& batch) const {
+    batch.lens.clear();
+    if (!scene_.features().lens && options_.shortcuts.no_lens) return;
+    batch.lens.resize(batch.samplers.size());
+    draw_2d(batch.samplers, kLens, batch.lens);
+    for (Vec2& u : batch.lens) u = sample_concentric_disk(u);
 }
 
 /// Camera rays that meet nothing end here.
@@ -122,7 +130,7 @@ void PathTracer::end_passing_rays(PathBatch& batch) const {
     for (std::size_t i = 0; i < n; ++i) {
         const Ray& ray = batch.rays[i];
         if (passing_rays_.passes(ray)) {
-            leave(batch, batch.states[i], ray.direction);
+            if (sees_sky_) leave(batch, batch.states[i], ray.direction);
             continue;
         }
         batch.states[kept] = batch.states[i];
@@ -158,6 +166,33 @@ bool PathTracer::varies(const PackedMaterial& material) const {
     return kVaries && (material.textured || !options_.shortcuts.ready_materials);
 }
 
+/// Whether this path is shaded in a LobeBlock wherever the Bsdf is packed.
+inline bool PathTracer::in_block(const PathState& state, const PackedMaterial& material, int bounce) const {
+    return material.packed && options_.shortcuts.lobe_blocks && !(aims(state, bounce) && material.smooth);
+}
+
+/// `lobe` has to stay where it is until the block is shaded.
+inline void PathTracer::add_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const {
+    LobeBlock& block = batch.lobes[static_cast<std::size_t>(lobe.kind)];
+    const std::size_t to = block.size++;
+    block.state[to] = static_cast<std::uint32_t>(i);
+    block.bsdf[to] = &lobe;
+    if (block.size == LobeBlock::kSize) shade_block(batch, lobe.kind, bounce);
+}
+
+/// The same for what holds at this point only.
+inline void PathTracer::add_copy_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const {
+    LobeBlock& block = batch.lobes[static_cast<std::size_t>(lobe.kind)];
+    PackedBsdf& copy = block.varying[block.size];
+    copy = lobe;
+    add_to_block(batch, i, copy, bounce);
+}
+
+/// Whether all caustics are left to this path: no lamp's path can be the same.
+inline bool PathTracer::aims(const PathState& state, int bounce) const {
+    return may_aim_ && bounce > 0 && state.light_ratio == 0;
+}
+
 template <bool kVaries>
 void PathTracer::shade(PathBatch& batch, int bounce) const {
     const bool dark = options_.shortcuts.no_light && !scene_.features().any_light();
@@ -167,13 +202,14 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
     batch.shadow_parts.clear();
     batch.next_states.clear();
     batch.next_rays.clear();
+    for (std::size_t i = 0; i < batch.rays.size() && bounce == 0; ++i)
+        batch.first_object[batch.states[i].path] = batch.hits[i].object;
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
         const PathState& state = batch.states[i];
         const Ray& ray = batch.rays[i];
         const Hit& hit = batch.hits[i];
-        if (bounce == 0) batch.first_object[state.path] = hit.object;
         if (!hit.valid()) {
-            leave(batch, state, ray.direction);
+            if (sees_sky_) leave(batch, state, ray.direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
@@ -243,11 +279,6 @@ void PathTracer::draw_numbers(PathBatch& batch, int bounce) const {
     scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);
 }
 
-/// Whether all caustics are left to this path: no lamp's path can be the same.
-bool PathTracer::aims(const PathState& state, int bounce) const {
-    return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;
-}
-
 /// Goes on as several paths of equal weight.
 void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at,
                        const AimedBsdf& bsdf, int bounce) const {
@@ -266,9 +297,8 @@ void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray,
     }
 }
 
-/// Adds what comes from the environment, if anything does.
+/// Adds what comes from the environment.
 void PathTracer::leave(PathBatch& batch, const PathState& state, const Vec3& direction) const {
-    if (!scene_.features().environment && options_.shortcuts.no_sky) return;
     ++batch.counts.environment_lookups;
     batch.radiance[state.part] += environment_light(state, direction);
 }
