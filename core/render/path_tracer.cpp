@@ -45,6 +45,11 @@ void record_light(const PathBatch& batch, int bounce, PathRecord& record) {
     record.radiance.push_back(std::accumulate(batch.radiance.begin(), batch.radiance.end(), Color(0)));
 }
 
+void note_first_objects(PathBatch& batch) {
+    for (std::size_t i = 0; i < batch.hits.size(); ++i)
+        batch.first_object[batch.states[i].path] = batch.hits[i].object;
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const RenderScene& scene, int width, int height, const PathTracerOptions& options)
@@ -85,62 +90,6 @@ bool PathTracer::trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, 
     }
     add_parts(batch);
     return true;
-}
-
-void PathTracer::camera_rays(PathBatch& batch) const {
-    const std::size_t n = batch.ids.size();
-    const RenderSettings& settings = scene_.scene().render;
-    const PixelFilter filter = scene_.scene().film.filter;
-    const Vec2 pixel_size(1 / static_cast<float>(width_), 1 / static_cast<float>(height_));
-    batch.samplers.resize(n);
-    batch.part_paths.clear();
-    batch.states.resize(n);
-    batch.rays.resize(n);
-    batch.radiance.assign(n, Color(0));
-    batch.first_object.assign(n, kNone);
-    batch.positions.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
-        batch.samplers[i] = Sampler(settings.sampler, settings.seed, batch.ids[i].pixel, batch.ids[i].sample);
-    draw_2d(batch.samplers, kFilter, batch.positions);
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::uint32_t pixel = batch.ids[i].pixel;
-        const auto width = static_cast<std::uint32_t>(width_);
-        const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
-        batch.positions[i] = (centre + sample_filter(filter, batch.positions[i])) * pixel_size;
-        batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
-    }
-    draw_lens(batch);
-    camera_.rays(batch.positions, batch.lens, batch.rays);
-    batch.counts.paths += n;
-}
-
-/// Draws points on the lens, where it has extent.
-void PathTracer::draw_lens(PathBatch& batch) const {
-    batch.lens.clear();
-    if (!scene_.features().lens && options_.shortcuts.no_lens) return;
-    batch.lens.resize(batch.samplers.size());
-    draw_2d(batch.samplers, kLens, batch.lens);
-    for (Vec2& u : batch.lens) u = sample_concentric_disk(u);
-}
-
-/// Camera rays that meet nothing end here.
-void PathTracer::end_passing_rays(PathBatch& batch) const {
-    const std::size_t n = batch.rays.size();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const Ray& ray = batch.rays[i];
-        if (passing_rays_.passes(ray)) {
-            if (sees_sky_) leave(batch, batch.states[i], ray.direction);
-            continue;
-        }
-        batch.states[kept] = batch.states[i];
-        batch.rays[kept] = ray;
-        ++kept;
-    }
-    batch.states.resize(kept);
-    batch.rays.resize(kept);
-    batch.counts.rays += n - kept;
-    batch.counts.passing_rays += n - kept;
 }
 
 void PathTracer::intersect(PathBatch& batch) const {
@@ -202,19 +151,16 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
     batch.shadow_parts.clear();
     batch.next_states.clear();
     batch.next_rays.clear();
-    for (std::size_t i = 0; i < batch.rays.size() && bounce == 0; ++i)
-        batch.first_object[batch.states[i].path] = batch.hits[i].object;
+    if (bounce == 0) note_first_objects(batch);
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-        const PathState& state = batch.states[i];
-        const Ray& ray = batch.rays[i];
         const Hit& hit = batch.hits[i];
         if (!hit.valid()) {
-            if (sees_sky_) leave(batch, state, ray.direction);
+            if (sees_sky_) leave(batch, batch.states[i], batch.rays[i].direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
         batch.counts.textured_hits += varies<kVaries>(material);
-        if (in_block(state, material, bounce)) {
+        if (in_block(batch.states[i], material, bounce)) {
             if (last) continue;
             if (!varies<kVaries>(material)) {
                 add_to_block(batch, i, *material.packed, bounce);
@@ -225,16 +171,22 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
                 continue;
             }
         }
-        const Interaction& at =
-            batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies<kVaries>(material));
-        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);
-        batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
+        add_surface(batch, i, material, varies<kVaries>(material));
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
     shade_surfaces(batch, bounce, last);
     for (const PackedBsdf::Kind kind : PackedBsdf::kKinds) shade_block(batch, kind, bounce);
     batch.states.swap(batch.next_states);
     batch.rays.swap(batch.next_rays);
+}
+
+/// Adds the light that the surface sends; the rest waits until many are there.
+void PathTracer::add_surface(PathBatch& batch, std::size_t i, const PackedMaterial& material, bool varies) const {
+    const PathState& state = batch.states[i];
+    const Ray& ray = batch.rays[i];
+    const Interaction& at = batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies);
+    if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, batch.hits[i], at);
+    batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
 }
 
 /// Shades what has gathered, and empties the block.

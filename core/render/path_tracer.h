@@ -64,6 +64,7 @@ private:
     void leave(PathBatch& batch, const PathState& state, const Vec3& direction) const;
     Color environment_light(const PathState& state, const Vec3& direction) const;
     Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;
+    void add_surface(PathBatch& batch, std::size_t i, const PackedMaterial& material, bool varies) const;
     void shade_surfaces(PathBatch& batch, int bounce, bool last) const;
     void draw_numbers(PathBatch& batch, int bounce) const;
     bool aims(const PathState& state, int bounce) const;

@@ -2,6 +2,7 @@
 none of it. A replacement is (file, old, new); each old stands once in its file."""
 
 TRACER, LOBES, TRACER_H = "core/render/path_tracer.cpp", "core/render/path_tracer_lobes.cpp", "core/render/path_tracer.h"
+STARTS = "core/render/path_tracer_camera.cpp"
 INTERACTION, AIMED, BLOCK = "core/render/interaction.h", "core/render/aimed_bsdf.h", "core/render/lobe_block.cpp"
 CAMERA, FILM = "core/render/camera_rays.cpp", "core/render/accumulation.cpp"
 KERNELS, FEW, CLIENT = "core/accel/kd_kernels.cpp", "core/accel/few_objects-inl.h", "core/accel/object_lanes-inl.h"
@@ -53,7 +54,7 @@ SHADING_NORMALS = [
     (SURFACE_LANES, "        point.ns = vec(6);\n", ""),
 ]
 LENSES = [
-    (TRACER, "    draw_lens(batch);\n", ""),
+    (STARTS, "    draw_lens(batch);\n", ""),
     (CAMERA, "    if (lens_radius_ == 0) {\n        for", "    if (true) {\n        for"),
 ]
 SKIES = [
@@ -80,8 +81,8 @@ LAMP_PATHS = [
     (LOBES, "    if (light_tracer_) find_light_ratios", "    if (false) find_light_ratios"),
 ]
 LAMPS_AND_EMISSION = LAMP_PATHS + [
-    (TRACER, "        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);\n",
-     "        static_cast<void>(at);\n"),
+    (TRACER, "    if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, batch.hits[i], at);\n",
+     "    static_cast<void>(at), static_cast<void>(state);\n"),
     (TRACER, "      light_sampling_(options.light_sampling && scene.features().light_sampling()),\n", ""),
     (TRACER_H, "    bool light_sampling_;\n", "    static constexpr bool light_sampling_ = false;\n"),
     (LOBES, "    if (task.samples_lights) scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);\n", ""),
