@@ -46,8 +46,7 @@ void record_light(const PathBatch& batch, int bounce, PathRecord& record) {
 }
 
 void note_first_objects(PathBatch& batch) {
-    for (std::size_t i = 0; i < batch.hits.size(); ++i)
-        batch.first_object[batch.states[i].path] = batch.hits[i].object;
+    for (std::size_t i = 0; i < batch.hits.size(); ++i) batch.first_object[batch.states[i].path] = batch.hits[i].object;
 }
 
 }  // namespace

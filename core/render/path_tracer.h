@@ -96,8 +96,8 @@ private:
     std::uint32_t parts_seed_;
     int rr_start_;
     bool light_sampling_;
-    bool sees_sky_;         ///< Rays that leave the scene look up the environment.
-    bool may_aim_ = false;  ///< All caustics are left to some of the paths.
+    bool sees_sky_;              ///< Rays that leave the scene look up the environment.
+    bool may_aim_ = false;       ///< All caustics are left to some of the paths.
     float roulette_throughput_;  ///< Below it paths may be cut, but for those that caustics are left to.
     std::optional<LightTracer> light_tracer_;
 };
