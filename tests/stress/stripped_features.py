@@ -8,7 +8,6 @@ CAMERA, FILM = "core/render/camera_rays.cpp", "core/render/accumulation.cpp"
 KERNELS, FEW, CLIENT = "core/accel/kd_kernels.cpp", "core/accel/few_objects-inl.h", "core/accel/object_lanes-inl.h"
 RAY_BLOCK = "core/accel/ray_block-inl.h"
 SURFACES, SURFACE_OF = "core/accel/surface_point.cpp", "core/accel/surface_of.h"
-SURFACE_LANES = "core/accel/surface_lanes-inl.h"
 SKY, LIGHTS, LAMPS = "core/lights/environment_light.cpp", "core/lights/light_table.cpp", "core/lights/few_lamps.cpp"
 PRINCIPLED = "core/materials/principled.cpp"
 
@@ -51,7 +50,6 @@ SHADING_NORMALS = [
     (SURFACES, "            if (ns != Vec3(0)) point.ns = ns;\n", ""),
     (SURFACES, "            const Vec3 ns = surface.shading_normal(hit);\n", ""),
     (SURFACES, "                    if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);\n", ""),
-    (SURFACE_LANES, "        point.ns = vec(6);\n", ""),
 ]
 LENSES = [
     (STARTS, "    draw_lens(batch);\n", ""),
@@ -99,7 +97,7 @@ MANY_LAMPS = [
     (LAMPS, "return lamps_.count == 1 ? all_lanes(row[0]) : looked_up(FloatTag(), row, lamp_);", "return all_lanes(row[0]);"),
 ]
 SPHERES = [
-    (FEW, "        if (leaf_.spheres > 0) {\n", "        if (false) {\n"),
+    (FEW, "const bool spheres = leaf_.spheres > 0;", "const bool spheres = false;"),
     (LAMPS, "        if (!lamps_.any_flat) return sphere_points(of(lamps_.origin), of(lamps_.size), p, u);\n", ""),
     (LAMPS, "        if (!lamps_.any_sphere) return flat;\n", "        if (true) return flat;\n"),
     (SURFACES, "} else if (entry.sphere && !wants_uv(i)) {", "} else if (false) {"),
