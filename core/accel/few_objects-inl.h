@@ -78,15 +78,18 @@ private:
     template <std::uint32_t kAxis>
     void trace_axis() {
         const std::size_t pairs = scene_.leaves->apart_pairs.pairs.size();
+        const bool spheres = leaf_.spheres > 0;
         for (std::size_t first = 0; first < pairs; first += kPairs) {
-            each_group(kAxis, [&](const WorldRays& rays)
-                                  HWY_ATTR { add_triangles<kAxis>(rays, first, std::min(pairs, first + kPairs)); });
+            const std::size_t end = std::min(pairs, first + kPairs);
+            each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR {
+                add_triangles<kAxis>(rays, first, end);
+                // Loading the rays again would take as long as some spheres.
+                if (spheres && end == pairs) add_spheres(rays);
+            });
             decide_triangles<kAxis>(first);
         }
-        if (leaf_.spheres > 0) {
-            each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { add_spheres(rays); });
-            decide_spheres();
-        }
+        if (spheres && pairs == 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { add_spheres(rays); });
+        if (spheres) decide_spheres();
         if (leaf_.others > 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });
     }
 

@@ -9,6 +9,10 @@
 #include "core/accel/surface_point.h"
 #include "core/accel/surface_rounding.h"
 #include "core/math/double_lanes-inl.h"
+#include "core/math/fours_lanes-inl.h"
+
+#include <cstddef>
+#include <type_traits>
 
 // The way from vectors in double, one a lane, to a SurfacePoint: the operations of surface_point.cpp in their order, and so
 // the same bits.
@@ -20,29 +24,23 @@ namespace rayuela::HWY_NAMESPACE {
 template <typename Of>
 HWY_INLINE void store_points(const DoubleAxes& p, Doubles size, const DoubleAxes& ng, std::size_t count, Of&& of,
                              SurfacePoint* points) {
+    static_assert(std::is_standard_layout_v<SurfacePoint> && offsetof(SurfacePoint, uv) == 12 * sizeof(float));
     const hn::Rebind<float, DoubleTag> df;
-    alignas(64) float rows[9][kDoubles];
-    const auto put = [&](const DoubleAxes& v, std::size_t row) HWY_ATTR {
-        hn::Store(hn::DemoteTo(df, v.x), df, rows[row]);
-        hn::Store(hn::DemoteTo(df, v.y), df, rows[row + 1]);
-        hn::Store(hn::DemoteTo(df, v.z), df, rows[row + 2]);
+    SurfacePoint spare;
+    SurfacePoint* to[kDoubles];
+    for (std::size_t k = 0; k < kDoubles; ++k) to[k] = k < count ? &points[of(k)] : &spare;
+    const auto put = [&](std::size_t offset, Doubles x, Doubles y, Doubles z, Doubles w) HWY_ATTR {
+        const hn::Vec<decltype(df)> four[4] = {hn::DemoteTo(df, x), hn::DemoteTo(df, y), hn::DemoteTo(df, z),
+                                               hn::DemoteTo(df, w)};
+        store_turned(df, four, [&](std::size_t k) HWY_ATTR { return &to[k]->p.x + offset; });
     };
     const Doubles own = hn::Add(hn::Mul(all_doubles(kSurfaceDoubleError), size), all_doubles(kSurfaceSmallestError));
     const auto error = [&](Doubles x)
                            HWY_ATTR { return hn::Add(hn::Mul(hn::Abs(x), all_doubles(kSurfaceRounding)), own); };
-    put(p, 0);
-    put({error(p.x), error(p.y), error(p.z)}, 3);
-    put(ng, 6);
-    for (std::size_t k = 0; k < count; ++k) {
-        const auto vec = [&](std::size_t row) { return Vec3(rows[row][k], rows[row + 1][k], rows[row + 2][k]); };
-        // Member by member: a whole that is copied waits for its parts to be stored.
-        SurfacePoint& point = points[of(k)];
-        point.p = vec(0);
-        point.p_error = vec(3);
-        point.ng = vec(6);
-        point.ns = vec(6);
-        point.uv = Vec2(0);
-    }
+    put(0, p.x, p.y, p.z, error(p.x));
+    put(4, error(p.y), error(p.z), ng.x, ng.y);
+    put(8, ng.z, ng.x, ng.y, ng.z);
+    for (SurfacePoint* point : to) point->uv = Vec2(0);
 }
 
 }  // namespace rayuela::HWY_NAMESPACE

@@ -15,7 +15,6 @@ struct Surface {
     Vec3d p{0};
     double size = 0;  ///< Extent of the numbers that p was made from; its error in double is a fraction of this.
     Vec3 ng{0};
-    Vec3 ns{0};  ///< Zero: as ng.
     Vec2 uv{0};
 };
 

@@ -24,24 +24,12 @@ constexpr bool kFlat = requires(const Of& surface, const Hit& hit) {
     surface.flat(hit);
 };
 
-template <typename Of>
-Surface surface_at(const Of& surface, const Ray& ray, const Hit& hit, bool with_uv) {
-    if constexpr (kFlat<Of>) {
-        Surface result = flat_surface(surface.flat(hit));
-        result.ns = surface.shading_normal(hit);
-        if (with_uv) result.uv = surface.uv(hit);
-        return result;
-    } else {
-        return surface.at(ray, hit, with_uv);
-    }
-}
-
 void write_rounded(const Surface& surface, SurfacePoint& point) {
     point.p = Vec3(surface.p);
     point.p_error =
         Vec3(glm::abs(surface.p) * kSurfaceRounding + (kSurfaceDoubleError * surface.size + kSurfaceSmallestError));
     point.ng = surface.ng;
-    point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;
+    point.ns = surface.ng;
     point.uv = surface.uv;
 }
 
@@ -99,12 +87,18 @@ const TriangleMesh* Surfaces::mesh_of(std::span<const Hit> hits, std::size_t i) 
 
 SurfacePoint Surfaces::point(const Ray& ray, const Hit& hit, bool with_uv) const {
     SurfacePoint point;
-    tables_->with(entries_[hit.object],
-                  [&](const auto& surface) { write_rounded(surface_at(surface, ray, hit, with_uv), point); });
+    tables_->with(entries_[hit.object], [&]<typename Of>(const Of& surface) {
+        if constexpr (kFlat<Of>) {
+            write_rounded(flat_surface(surface.flat(hit)), point);
+        } else {
+            write_rounded(surface.at(ray, hit, with_uv), point);
+        }
+    });
+    add_details(hit, with_uv, point);
     return point;
 }
 
-/// What `flat_points` leaves out.
+/// What `flat_surface` leaves out.
 void Surfaces::add_details(const Hit& hit, bool with_uv, SurfacePoint& point) const {
     tables_->with(entries_[hit.object], [&]<typename Of>(const Of& surface) {
         if constexpr (kFlat<Of>) {
@@ -117,17 +111,24 @@ void Surfaces::add_details(const Hit& hit, bool with_uv, SurfacePoint& point) co
 
 void Surfaces::points(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
                       std::span<SurfacePoint> points) const {
+    has_meshes_ || !with_uv.empty() ? points_of<true>(rays, hits, with_uv, points)
+                                    : points_of<false>(rays, hits, with_uv, points);
+}
+
+template <bool kDetails>
+void Surfaces::points_of(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
+                         std::span<SurfacePoint> points) const {
     SphereHit spheres[FlatBlock::kSize];
     std::size_t sphere_count = 0;
     FlatBlock flats;
-    const auto wants_uv = [&](std::size_t i) { return !with_uv.empty() && with_uv[i] != 0; };
+    const auto wants_uv = [&](std::size_t i) { return kDetails && !with_uv.empty() && with_uv[i] != 0; };
     const auto finish_spheres = [&] {
         sphere_points(tables_->spheres, std::span(spheres, sphere_count), rays, hits, points);
         sphere_count = 0;
     };
     const auto finish_flats = [&] {
         flat_points(flats, points);
-        for (std::size_t k = 0; k < flats.size; ++k) {
+        for (std::size_t k = 0; kDetails && k < flats.size; ++k) {
             const std::uint32_t i = flats.ray[k];
             if (wants_uv(i) || entries_[hits[i].object].interpolates) add_details(hits[i], wants_uv(i), points[i]);
         }
@@ -137,7 +138,7 @@ void Surfaces::points(std::span<const Ray> rays, std::span<const Hit> hits, std:
     // would change nothing, the compiler would leave it out.
     constexpr std::size_t kTriangle = 16, kVertices = 8;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (has_meshes_) {
+        if (kDetails && has_meshes_) {
             if (const TriangleMesh* mesh = mesh_of(hits, i + kTriangle))
                 __builtin_prefetch(&mesh->triangles[hits[i + kTriangle].primitive]);
             if (const TriangleMesh* mesh = mesh_of(hits, i + kVertices)) {
@@ -159,8 +160,8 @@ void Surfaces::points(std::span<const Ray> rays, std::span<const Hit> hits, std:
             spheres[sphere_count++] = {static_cast<std::uint32_t>(i), entry.index};
             if (sphere_count == std::size(spheres)) finish_spheres();
         } else {
-            tables_->with(entry, [&](const auto& surface) {
-                write_rounded(surface_at(surface, rays[i], hits[i], wants_uv(i)), points[i]);
+            tables_->with(entry, [&]<typename Of>(const Of& surface) {
+                if constexpr (!kFlat<Of>) write_rounded(surface.at(rays[i], hits[i], wants_uv(i)), points[i]);
             });
         }
     }

@@ -49,6 +49,10 @@ public:
 
 private:
     struct Tables;
+    // kDetails: some hits may be of meshes or want uv; the other form does not look.
+    template <bool kDetails>
+    void points_of(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint8_t> with_uv,
+                   std::span<SurfacePoint> points) const;
     const TriangleMesh* mesh_of(std::span<const Hit> hits, std::size_t i) const;
     void add_details(const Hit& hit, bool with_uv, SurfacePoint& point) const;
     /// Where in the tables an instance is.

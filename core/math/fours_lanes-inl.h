@@ -30,6 +30,16 @@ HWY_INLINE void load_singly(Tag tag, const At& at, hn::Vec<Tag> (&out)[kCount]) 
     for (std::size_t k = 0; k < kCount; ++k) out[k] = hn::Load(tag, rows[k]);
 }
 
+/// The way back.
+template <typename Tag, typename At>
+HWY_INLINE void store_singly(Tag tag, const hn::Vec<Tag> (&v)[4], const At& at) {
+    alignas(16) hn::TFromD<Tag> rows[4][hn::MaxLanes(tag)];
+    for (std::size_t k = 0; k < 4; ++k) hn::Store(v[k], tag, rows[k]);
+    for (std::size_t lane = 0; lane < hn::MaxLanes(tag); ++lane) {
+        for (std::size_t k = 0; k < 4; ++k) at(lane)[k] = rows[k][lane];
+    }
+}
+
 #if HWY_TARGET == HWY_SCALAR
 
 template <std::size_t kCount, typename Tag, typename At>
@@ -37,10 +47,9 @@ HWY_INLINE void load_turned(Tag tag, const At& at, hn::Vec<Tag> (&out)[kCount]) 
     load_singly(tag, at, out);
 }
 
-template <typename At>
-HWY_INLINE void store_fours(Floats x, Floats y, Floats z, Floats w, const At& at) {
-    const Floats from[] = {x, y, z, w};
-    for (std::size_t k = 0; k < 4; ++k) at(0)[k] = hn::GetLane(from[k]);
+template <typename Tag, typename At>
+HWY_INLINE void store_turned(Tag tag, const hn::Vec<Tag> (&v)[4], const At& at) {
+    store_singly(tag, v, at);
 }
 
 #else
@@ -94,15 +103,18 @@ HWY_INLINE void load_turned(Tag d, const At& at, hn::Vec<Tag> (&out)[2]) {
 }
 
 /// The way back of four floats a lane.
-template <typename At>
-HWY_INLINE void store_fours(Floats x, Floats y, Floats z, Floats w, const At& at) {
-    const FloatTag d;
-    const Floats low_xz = hn::InterleaveLower(d, x, z), low_yw = hn::InterleaveLower(d, y, w);
-    const Floats high_xz = hn::InterleaveUpper(d, x, z), high_yw = hn::InterleaveUpper(d, y, w);
-    store_blocks(d, hn::InterleaveLower(d, low_xz, low_yw), at, 0);
-    store_blocks(d, hn::InterleaveUpper(d, low_xz, low_yw), at, 1);
-    store_blocks(d, hn::InterleaveLower(d, high_xz, high_yw), at, 2);
-    store_blocks(d, hn::InterleaveUpper(d, high_xz, high_yw), at, 3);
+template <typename Tag, typename At>
+HWY_INLINE void store_turned(Tag d, const hn::Vec<Tag> (&v)[4], const At& at) {
+    if constexpr (hn::MaxLanes(d) < 4) {
+        store_singly(d, v, at);
+    } else {
+        const auto low_even = hn::InterleaveLower(d, v[0], v[2]), low_odd = hn::InterleaveLower(d, v[1], v[3]);
+        const auto high_even = hn::InterleaveUpper(d, v[0], v[2]), high_odd = hn::InterleaveUpper(d, v[1], v[3]);
+        store_blocks(d, hn::InterleaveLower(d, low_even, low_odd), at, 0);
+        store_blocks(d, hn::InterleaveUpper(d, low_even, low_odd), at, 1);
+        store_blocks(d, hn::InterleaveLower(d, high_even, high_odd), at, 2);
+        store_blocks(d, hn::InterleaveUpper(d, high_even, high_odd), at, 3);
+    }
 }
 
 #endif
@@ -112,6 +124,12 @@ HWY_INLINE FourLanes load_fours(const At& at) {
     Floats v[4];
     load_turned(FloatTag(), at, v);
     return {v[0], v[1], v[2], v[3]};
+}
+
+template <typename At>
+HWY_INLINE void store_fours(Floats x, Floats y, Floats z, Floats w, const At& at) {
+    const Floats v[4] = {x, y, z, w};
+    store_turned(FloatTag(), v, at);
 }
 
 }  // namespace rayuela::HWY_NAMESPACE

@@ -55,24 +55,40 @@ CameraRays::CameraRays(const Camera& camera, double aspect)
     down_ = -2 * half_height * up;
 }
 
-void CameraRays::write_ray(const Vec2& position, const Vec2& lens, Ray& ray) const {
+/// To `position` of the image plane at distance 1, from the centre of the lens.
+Vec3d CameraRays::direction(const Vec2& position) const {
+    return corner_ + double{position.x} * across_ + double{position.y} * down_;
+}
+
+// Rays are written where they are to be: a whole that is copied has to wait for its parts to be stored.
+
+void CameraRays::write_ray_of_centre(const Vec2& position, Ray& ray) const {
     ray.t_min = 0;
     ray.t_max = kInfinity;
-    const Vec3d direction = corner_ + double{position.x} * across_ + double{position.y} * down_;
-    if (lens_radius_ == 0) {
-        ray.origin = origin_;
-        ray.direction = Vec3(glm::normalize(direction));
-        return;
-    }
+    ray.origin = origin_;
+    ray.direction = Vec3(glm::normalize(direction(position)));
+}
+
+void CameraRays::write_ray_of_lens(const Vec2& position, const Vec2& lens, Ray& ray) const {
     // Relative to the lens centre: the distance to the focus plane is not lost in the camera's coordinates.
     const Vec3d offset = lens_radius_ * (double{lens.x} * right_ + double{lens.y} * up_);
+    ray.t_min = 0;
+    ray.t_max = kInfinity;
     ray.origin = Vec3(Vec3d(origin_) + offset);
-    ray.direction = Vec3(glm::normalize(focus_distance_ * direction - offset));
+    ray.direction = Vec3(glm::normalize(focus_distance_ * direction(position) - offset));
+}
+
+void CameraRays::rays(std::span<const Vec2> positions, std::span<const Vec2> lens, std::span<Ray> rays) const {
+    if (lens_radius_ == 0) {
+        for (std::size_t i = 0; i < positions.size(); ++i) write_ray_of_centre(positions[i], rays[i]);
+    } else {
+        for (std::size_t i = 0; i < positions.size(); ++i) write_ray_of_lens(positions[i], lens[i], rays[i]);
+    }
 }
 
 Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
     Ray ray;
-    write_ray(position, lens, ray);
+    rays({&position, 1}, {&lens, 1}, {&ray, 1});
     return ray;
 }
 

@@ -4,6 +4,7 @@
 #include "core/scene/scene.h"
 
 #include <optional>
+#include <span>
 
 namespace rayuela {
 
@@ -17,8 +18,8 @@ public:
     /// Through `position` of the image, (0, 0) its upper left and (1, 1) its lower right corner, from the point `lens` of
     /// the unit disc. The direction is unit.
     Ray ray(const Vec2& position, const Vec2& lens) const;
-    /// The same where it is to be: a whole that is copied has to wait for its parts to be stored.
-    void write_ray(const Vec2& position, const Vec2& lens, Ray& ray) const;
+    /// The same of many, one a position. `lens` may be empty where the lens has no extent.
+    void rays(std::span<const Vec2> positions, std::span<const Vec2> lens, std::span<Ray> rays) const;
     /// A point as the camera sees it.
     struct View {
         Vec3 origin{0};    ///< Of the ray, on the lens.
@@ -32,6 +33,10 @@ public:
     const Vec3& forward() const { return forward_; }
 
 private:
+    Vec3d direction(const Vec2& position) const;
+    void write_ray_of_centre(const Vec2& position, Ray& ray) const;
+    void write_ray_of_lens(const Vec2& position, const Vec2& lens, Ray& ray) const;
+
     // In double: through a long lens the pixels are not much farther apart than floats.
     Vec3 origin_, forward_;
     Vec3d right_, up_;              ///< Unit.

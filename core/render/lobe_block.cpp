@@ -167,7 +167,7 @@ HWY_INLINE FloatMask valid(const Vec3Lanes& wo_local, const BsdfSampleLanes& sam
 }
 
 /// As PathTracer::scatter has it.
-template <typename Lobe>
+template <PackedBsdf::Kind kKind, typename Lobe>
 HWY_INLINE FloatMask scattered_paths(const LobeTask& task, const InteractionLanes& at, const Lobe& lobe,
                                      Vec3Lanes throughput, std::size_t i, LobeBlock& block) {
     const FloatTag d;
@@ -186,7 +186,7 @@ HWY_INLINE FloatMask scattered_paths(const LobeTask& task, const InteractionLane
         throughput = select(weak, throughput / survival, throughput);
     }
     store_rays(at.ray_origin(wi), wi, all_lanes(kInfinity), block.next_ray + i);
-    store_fours(throughput.x, throughput.y, throughput.z, sample.pdf,
+    store_fours(throughput.x, throughput.y, throughput.z, is_delta(kKind) ? hn::Zero(d) : sample.pdf,
                 [&](std::size_t lane) HWY_ATTR { return &block.next_throughput[i + lane].x; });
     store(sample.wi, block.next_local, i);
     return goes_on;
@@ -208,7 +208,7 @@ HWY_ATTR void scatter_as(const LobeTask& task, const LobePaths& paths, LobeBlock
                 block.casts_shadow_ray |= std::uint64_t{bits_of(d, lit)} << i;
             }
         }
-        const FloatMask goes_on = hn::And(there, scattered_paths(task, at, lobe, throughput, i, block));
+        const FloatMask goes_on = hn::And(there, scattered_paths<kKind>(task, at, lobe, throughput, i, block));
         block.goes_on |= std::uint64_t{bits_of(d, goes_on)} << i;
     }
 }

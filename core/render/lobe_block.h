@@ -34,7 +34,7 @@ struct LobeBlock {
     // Found.
     Ray shadow_ray[kSize], next_ray[kSize];
     Vec4 shadow_light[kSize];                 ///< The fourth says nothing.
-    Vec4 next_throughput[kSize];              ///< The fourth is the density, as BsdfSample has it.
+    Vec4 next_throughput[kSize];              ///< The fourth is PathState::bsdf_pdf.
     Rows next_local;                          ///< The direction in the frame of the shading normal.
     std::uint64_t casts_shadow_ray, goes_on;  ///< One bit a path.
 };

@@ -58,9 +58,10 @@ struct PathBatch {
     std::vector<Color> radiance;              ///< The result; on the way followed by those of the parts of split paths.
     std::vector<std::uint32_t> first_object;  ///< Hit::object of the camera ray.
 
-    std::vector<Vec2> filter_numbers, lens_numbers;  ///< Of the camera.
-    std::vector<Sampler> samplers;                   ///< One a path, then those of the parts of split paths.
-    std::vector<std::uint32_t> part_paths;           ///< Which path each of these parts belongs to.
+    std::vector<Vec2> positions;            ///< Of the image.
+    std::vector<Vec2> lens;                 ///< Points of the unit disc; empty where the lens has no extent.
+    std::vector<Sampler> samplers;          ///< One a path, then those of the parts of split paths.
+    std::vector<std::uint32_t> part_paths;  ///< Which path each of these parts belongs to.
 
     // One a path still on its way, in the order of the paths.
     std::vector<PathState> states, next_states;

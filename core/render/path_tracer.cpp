@@ -45,6 +45,10 @@ void record_light(const PathBatch& batch, int bounce, PathRecord& record) {
     record.radiance.push_back(std::accumulate(batch.radiance.begin(), batch.radiance.end(), Color(0)));
 }
 
+void note_first_objects(PathBatch& batch) {
+    for (std::size_t i = 0; i < batch.hits.size(); ++i) batch.first_object[batch.states[i].path] = batch.hits[i].object;
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const RenderScene& scene, int width, int height, const PathTracerOptions& options)
@@ -57,9 +61,11 @@ PathTracer::PathTracer(const RenderScene& scene, int width, int height, const Pa
       parts_seed_(static_cast<std::uint32_t>(mix_bits(scene.scene().render.seed + 0x9e3779b97f4a7c15u))),
       rr_start_(scene.scene().render.rr_start.value_or(kDefaultRouletteStart)),
       light_sampling_(options.light_sampling && scene.features().light_sampling()),
+      sees_sky_(scene.features().environment || !options.shortcuts.no_sky),
       roulette_throughput_(roulette_throughput(scene, light_sampling_)) {
     if (options.light_tracing && options.light_sampling && scene.emission())
         light_tracer_.emplace(scene, camera_, width, height);
+    may_aim_ = light_tracer_ && light_tracer_->lamps_are_small();
 }
 
 bool PathTracer::trace(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const {
@@ -85,56 +91,6 @@ bool PathTracer::trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, 
     return true;
 }
 
-void PathTracer::camera_rays(PathBatch& batch) const {
-    const std::size_t n = batch.ids.size();
-    const RenderSettings& settings = scene_.scene().render;
-    const PixelFilter filter = scene_.scene().film.filter;
-    const Vec2 pixel_size(1 / static_cast<float>(width_), 1 / static_cast<float>(height_));
-    batch.samplers.resize(n);
-    batch.part_paths.clear();
-    batch.states.resize(n);
-    batch.rays.resize(n);
-    batch.radiance.assign(n, Color(0));
-    batch.first_object.assign(n, kNone);
-    batch.filter_numbers.resize(n);
-    batch.lens_numbers.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
-        batch.samplers[i] = Sampler(settings.sampler, settings.seed, batch.ids[i].pixel, batch.ids[i].sample);
-    draw_2d(batch.samplers, kFilter, batch.filter_numbers);
-    const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;
-    if (lens_extends) draw_2d(batch.samplers, kLens, batch.lens_numbers);
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::uint32_t pixel = batch.ids[i].pixel;
-        const auto width = static_cast<std::uint32_t>(width_);
-        const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
-        const Vec2 position = (centre + sample_filter(filter, batch.filter_numbers[i])) * pixel_size;
-        const Vec2 lens = lens_extends ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);
-        batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
-        camera_.write_ray(position, lens, batch.rays[i]);
-    }
-    batch.counts.paths += n;
-}
-
-/// Camera rays that meet nothing end here.
-void PathTracer::end_passing_rays(PathBatch& batch) const {
-    const std::size_t n = batch.rays.size();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const Ray& ray = batch.rays[i];
-        if (passing_rays_.passes(ray)) {
-            leave(batch, batch.states[i], ray.direction);
-            continue;
-        }
-        batch.states[kept] = batch.states[i];
-        batch.rays[kept] = ray;
-        ++kept;
-    }
-    batch.states.resize(kept);
-    batch.rays.resize(kept);
-    batch.counts.rays += n - kept;
-    batch.counts.passing_rays += n - kept;
-}
-
 void PathTracer::intersect(PathBatch& batch) const {
     batch.hits.resize(batch.rays.size());
     scene_.accelerator().intersect(batch.rays, batch.hits);
@@ -158,6 +114,33 @@ bool PathTracer::varies(const PackedMaterial& material) const {
     return kVaries && (material.textured || !options_.shortcuts.ready_materials);
 }
 
+/// Whether this path is shaded in a LobeBlock wherever the Bsdf is packed.
+inline bool PathTracer::in_block(const PathState& state, const PackedMaterial& material, int bounce) const {
+    return material.packed && options_.shortcuts.lobe_blocks && !(aims(state, bounce) && material.smooth);
+}
+
+/// `lobe` has to stay where it is until the block is shaded.
+inline void PathTracer::add_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const {
+    LobeBlock& block = batch.lobes[static_cast<std::size_t>(lobe.kind)];
+    const std::size_t to = block.size++;
+    block.state[to] = static_cast<std::uint32_t>(i);
+    block.bsdf[to] = &lobe;
+    if (block.size == LobeBlock::kSize) shade_block(batch, lobe.kind, bounce);
+}
+
+/// The same for what holds at this point only.
+inline void PathTracer::add_copy_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const {
+    LobeBlock& block = batch.lobes[static_cast<std::size_t>(lobe.kind)];
+    PackedBsdf& copy = block.varying[block.size];
+    copy = lobe;
+    add_to_block(batch, i, copy, bounce);
+}
+
+/// Whether all caustics are left to this path: no lamp's path can be the same.
+inline bool PathTracer::aims(const PathState& state, int bounce) const {
+    return may_aim_ && bounce > 0 && state.light_ratio == 0;
+}
+
 template <bool kVaries>
 void PathTracer::shade(PathBatch& batch, int bounce) const {
     const bool dark = options_.shortcuts.no_light && !scene_.features().any_light();
@@ -167,18 +150,16 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
     batch.shadow_parts.clear();
     batch.next_states.clear();
     batch.next_rays.clear();
+    if (bounce == 0) note_first_objects(batch);
     for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-        const PathState& state = batch.states[i];
-        const Ray& ray = batch.rays[i];
         const Hit& hit = batch.hits[i];
-        if (bounce == 0) batch.first_object[state.path] = hit.object;
         if (!hit.valid()) {
-            leave(batch, state, ray.direction);
+            if (sees_sky_) leave(batch, batch.states[i], batch.rays[i].direction);
             continue;
         }
         const PackedMaterial& material = scene_.packed_material(hit.object);
         batch.counts.textured_hits += varies<kVaries>(material);
-        if (in_block(state, material, bounce)) {
+        if (in_block(batch.states[i], material, bounce)) {
             if (last) continue;
             if (!varies<kVaries>(material)) {
                 add_to_block(batch, i, *material.packed, bounce);
@@ -189,16 +170,22 @@ void PathTracer::shade(PathBatch& batch, int bounce) const {
                 continue;
             }
         }
-        const Interaction& at =
-            batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies<kVaries>(material));
-        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);
-        batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
+        add_surface(batch, i, material, varies<kVaries>(material));
         if (batch.surfaces.at.size() == SurfaceBlock::kSize) shade_surfaces(batch, bounce, last);
     }
     shade_surfaces(batch, bounce, last);
     for (const PackedBsdf::Kind kind : PackedBsdf::kKinds) shade_block(batch, kind, bounce);
     batch.states.swap(batch.next_states);
     batch.rays.swap(batch.next_rays);
+}
+
+/// Adds the light that the surface sends; the rest waits until many are there.
+void PathTracer::add_surface(PathBatch& batch, std::size_t i, const PackedMaterial& material, bool varies) const {
+    const PathState& state = batch.states[i];
+    const Ray& ray = batch.rays[i];
+    const Interaction& at = batch.surfaces.at.emplace_back(batch.points[i], material, -ray.direction, varies);
+    if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, batch.hits[i], at);
+    batch.surfaces.states.push_back(static_cast<std::uint32_t>(i));
 }
 
 /// Shades what has gathered, and empties the block.
@@ -243,11 +230,6 @@ void PathTracer::draw_numbers(PathBatch& batch, int bounce) const {
     scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);
 }
 
-/// Whether all caustics are left to this path: no lamp's path can be the same.
-bool PathTracer::aims(const PathState& state, int bounce) const {
-    return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;
-}
-
 /// Goes on as several paths of equal weight.
 void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray, const Interaction& at,
                        const AimedBsdf& bsdf, int bounce) const {
@@ -266,9 +248,8 @@ void PathTracer::split(PathBatch& batch, const PathState& state, const Ray& ray,
     }
 }
 
-/// Adds what comes from the environment, if anything does.
+/// Adds what comes from the environment.
 void PathTracer::leave(PathBatch& batch, const PathState& state, const Vec3& direction) const {
-    if (!scene_.features().environment && options_.shortcuts.no_sky) return;
     ++batch.counts.environment_lookups;
     batch.radiance[state.part] += environment_light(state, direction);
 }

@@ -51,6 +51,7 @@ private:
     template <bool kVaries>
     bool trace_as(PathBatch& batch, const std::atomic<bool>& cancelled, PathRecord* record) const;
     void camera_rays(PathBatch& batch) const;
+    void draw_lens(PathBatch& batch) const;
     void end_passing_rays(PathBatch& batch) const;
     void intersect(PathBatch& batch) const;
     template <bool kVaries>
@@ -63,6 +64,7 @@ private:
     void leave(PathBatch& batch, const PathState& state, const Vec3& direction) const;
     Color environment_light(const PathState& state, const Vec3& direction) const;
     Color emitted_light(const PathState& state, const Ray& ray, const Hit& hit, const Interaction& at) const;
+    void add_surface(PathBatch& batch, std::size_t i, const PackedMaterial& material, bool varies) const;
     void shade_surfaces(PathBatch& batch, int bounce, bool last) const;
     void draw_numbers(PathBatch& batch, int bounce) const;
     bool aims(const PathState& state, int bounce) const;
@@ -78,6 +80,8 @@ private:
     void add_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const;
     void add_copy_to_block(PathBatch& batch, std::size_t i, const PackedBsdf& lobe, int bounce) const;
     void shade_block(PathBatch& batch, PackedBsdf::Kind kind, int bounce) const;
+    void find_light_ratios(PathBatch& batch, const LobeBlock& block, PackedBsdf::Kind kind, int bounce,
+                           std::size_t to) const;
     LobeTask lobe_task(PackedBsdf::Kind kind, int bounce) const;
     int roulette_start(bool specular) const;
     float light_ratio(const PathState& state, const Ray& ray, const Interaction& at, const Vec3& wi,
@@ -92,6 +96,8 @@ private:
     std::uint32_t parts_seed_;
     int rr_start_;
     bool light_sampling_;
+    bool sees_sky_;              ///< Rays that leave the scene look up the environment.
+    bool may_aim_ = false;       ///< All caustics are left to some of the paths.
     float roulette_throughput_;  ///< Below it paths may be cut, but for those that caustics are left to.
     std::optional<LightTracer> light_tracer_;
 };

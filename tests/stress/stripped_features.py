@@ -2,12 +2,12 @@
 none of it. A replacement is (file, old, new); each old stands once in its file."""
 
 TRACER, LOBES, TRACER_H = "core/render/path_tracer.cpp", "core/render/path_tracer_lobes.cpp", "core/render/path_tracer.h"
+STARTS = "core/render/path_tracer_camera.cpp"
 INTERACTION, AIMED, BLOCK = "core/render/interaction.h", "core/render/aimed_bsdf.h", "core/render/lobe_block.cpp"
 CAMERA, FILM = "core/render/camera_rays.cpp", "core/render/accumulation.cpp"
 KERNELS, FEW, CLIENT = "core/accel/kd_kernels.cpp", "core/accel/few_objects-inl.h", "core/accel/object_lanes-inl.h"
 RAY_BLOCK = "core/accel/ray_block-inl.h"
 SURFACES, SURFACE_OF = "core/accel/surface_point.cpp", "core/accel/surface_of.h"
-SURFACE_LANES = "core/accel/surface_lanes-inl.h"
 SKY, LIGHTS, LAMPS = "core/lights/environment_light.cpp", "core/lights/light_table.cpp", "core/lights/few_lamps.cpp"
 PRINCIPLED = "core/materials/principled.cpp"
 
@@ -36,8 +36,9 @@ TEXTURES = [
      " {\n        static_cast<void>(varies);\n    }"),
     (INTERACTION, "return varying_ ? *varying_ : material.bsdf;", "return material.bsdf;"),
     (INTERACTION, "    std::optional<Bsdf> varying_;  ///< Where the material is textured.\n", ""),
-    (SURFACES, "[&](std::size_t i) { return !with_uv.empty() && with_uv[i] != 0; };",
+    (SURFACES, "[&](std::size_t i) { return kDetails && !with_uv.empty() && with_uv[i] != 0; };",
      "[&](std::size_t) { return static_cast<void>(with_uv), false; };"),
+    (SURFACES, "has_meshes_ || !with_uv.empty() ?", "has_meshes_ ?"),
 ]
 SHADING_NORMALS = [
     (INTERACTION, "return (glm::dot(w, point.ng) > 0) == (glm::dot(w, point.ns) > 0) ? point.ns : point.ng;",
@@ -45,18 +46,18 @@ SHADING_NORMALS = [
     (BLOCK, "frame(task.interpolates ? shading_normal(load(block.wo, i), ng, load(block.ns, i)) : ng),", "frame(ng),"),
     (BLOCK, "    if (task.interpolates) store(Vec3Lanes{c.y, c.z, c.w}, block.ns, i);\n", "    static_cast<void>(task);\n"),
     (SURFACES, "if (wants_uv(i) || entries_[hits[i].object].interpolates)", "if (wants_uv(i))"),
-    (SURFACES, "    point.ns = surface.ns == Vec3(0) ? surface.ng : surface.ns;\n", ""),
+    (SURFACES, "    point.ns = surface.ng;\n", ""),
+    (SURFACES, "            if (ns != Vec3(0)) point.ns = ns;\n", ""),
+    (SURFACES, "            const Vec3 ns = surface.shading_normal(hit);\n", ""),
     (SURFACES, "                    if (!mesh->normals.empty()) __builtin_prefetch(&mesh->normals[t[corner]]);\n", ""),
-    (SURFACE_LANES, "        point.ns = vec(6);\n", ""),
 ]
 LENSES = [
-    (TRACER, "    const bool lens_extends = scene_.features().lens || !options_.shortcuts.no_lens;\n", ""),
-    (TRACER, "    if (lens_extends) draw_2d(batch.samplers, kLens, batch.lens_numbers);\n", ""),
-    (TRACER, "lens_extends ? sample_concentric_disk(batch.lens_numbers[i]) : Vec2(0);", "Vec2(0);"),
-    (CAMERA, "    if (lens_radius_ == 0) {\n        ray.origin = origin_;", "    if (true) {\n        ray.origin = origin_;"),
+    (STARTS, "    draw_lens(batch);\n", ""),
+    (CAMERA, "    if (lens_radius_ == 0) {\n        for", "    if (true) {\n        for"),
 ]
 SKIES = [
-    (TRACER, "if (!scene_.features().environment && options_.shortcuts.no_sky) return;", "if (true) return;"),
+    (TRACER, "      sees_sky_(scene.features().environment || !options.shortcuts.no_sky),\n", ""),
+    (TRACER_H, "    bool sees_sky_; ", "    static constexpr bool sees_sky_ = false; "),
 ]
 PANORAMAS = [
     (SKY, "    if (image_) return scale_ * look_up(*image_, image_position(w));\n", ""),
@@ -71,15 +72,15 @@ PANORAMAS = [
      "return static_cast<void>(wi), 0.0f;"),
 ]
 LAMP_PATHS = [
-    (TRACER, "return light_tracer_ && light_tracer_->lamps_are_small() && bounce > 0 && state.light_ratio == 0;",
-     "return static_cast<void>(state), static_cast<void>(bounce), false;"),
+    (TRACER, "    may_aim_ = light_tracer_ && light_tracer_->lamps_are_small();\n", ""),
+    (TRACER_H, "    bool may_aim_ = false; ", "    static constexpr bool may_aim_ = false; "),
     (TRACER, "light_tracer_ ? light_tracer_->camera_weight(state.light_ratio, hit, at) : 1;", "1;"),
     (TRACER, "if (light_tracer_) next.light_ratio", "if (false) next.light_ratio"),
-    (LOBES, "if (light_tracer_) {", "if (false) {"),
+    (LOBES, "    if (light_tracer_) find_light_ratios", "    if (false) find_light_ratios"),
 ]
 LAMPS_AND_EMISSION = LAMP_PATHS + [
-    (TRACER, "        if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, hit, at);\n",
-     "        static_cast<void>(at);\n"),
+    (TRACER, "    if (material.emissive) batch.radiance[state.part] += emitted_light(state, ray, batch.hits[i], at);\n",
+     "    static_cast<void>(at), static_cast<void>(state);\n"),
     (TRACER, "      light_sampling_(options.light_sampling && scene.features().light_sampling()),\n", ""),
     (TRACER_H, "    bool light_sampling_;\n", "    static constexpr bool light_sampling_ = false;\n"),
     (LOBES, "    if (task.samples_lights) scene_.lights().sample(block.light, options_.shortcuts.lamp_blocks);\n", ""),
@@ -96,7 +97,7 @@ MANY_LAMPS = [
     (LAMPS, "return lamps_.count == 1 ? all_lanes(row[0]) : looked_up(FloatTag(), row, lamp_);", "return all_lanes(row[0]);"),
 ]
 SPHERES = [
-    (FEW, "        if (leaf_.spheres > 0) {\n", "        if (false) {\n"),
+    (FEW, "const bool spheres = leaf_.spheres > 0;", "const bool spheres = false;"),
     (LAMPS, "        if (!lamps_.any_flat) return sphere_points(of(lamps_.origin), of(lamps_.size), p, u);\n", ""),
     (LAMPS, "        if (!lamps_.any_sphere) return flat;\n", "        if (true) return flat;\n"),
     (SURFACES, "} else if (entry.sphere && !wants_uv(i)) {", "} else if (false) {"),
@@ -112,7 +113,8 @@ MESHES = [
     (KERNELS, "    trace_candidates<kQuery>(scene, rays, hits, work);\n}", "}"),
     (FEW, "                if (scene_.mesh_trees[object]) {", "                if (false) {"),
     (CLIENT, "                if (scene_.mesh_trees[object]) {", "                if (false) {"),
-    (SURFACES, "        if (has_meshes_) {", "        if (false) {"),
+    (SURFACES, "        if (kDetails && has_meshes_) {", "        if (false) {"),
+    (SURFACES, "has_meshes_ || !with_uv.empty() ?", "!with_uv.empty() ?"),
 ]
 BOXES_AND_MESHES = [change for change in MESHES if change[0] in (KERNELS, SURFACES)] + [
     (FEW, "        if (leaf_.others > 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });\n", ""),
@@ -166,7 +168,6 @@ DELTA_LOBES = [
     (TRACER, "rr_start_ + (specular ? kSparedSpecularBounces : 0);", "static_cast<void>(specular), rr_start_;"),
     (TRACER, "next.bsdf_pdf = sample->specular ? 0 : sample->pdf;", "next.bsdf_pdf = sample->pdf;"),
     (LOBES, ".specular = is_delta(kind)}", ".specular = false}"),
-    (LOBES, "state.bsdf_pdf = is_delta(kind) ? 0 : pdf;", "state.bsdf_pdf = pdf;"),
     (LOBES, ".samples_lights = light_sampling_ && !is_delta(kind),", ".samples_lights = light_sampling_,"),
 ]
 ALL_LOBES_BUT_MATTE = together(TRANSMISSION, DELTA_LOBES, [
@@ -174,8 +175,8 @@ ALL_LOBES_BUT_MATTE = together(TRANSMISSION, DELTA_LOBES, [
     without_lobe("dull", "DullLobe"),
     without_lobe("layered", "PrincipledLobe<false>"),
     with_kinds(["matte"]),
-    (LOBES, "batch.lobes[static_cast<std::size_t>(lobe.kind)];\n    const", "batch.lobes[0];\n    const"),
-    (LOBES, "if (block.size == LobeBlock::kSize) shade_block(batch, lobe.kind, bounce);",
+    (TRACER, "batch.lobes[static_cast<std::size_t>(lobe.kind)];\n    const", "batch.lobes[0];\n    const"),
+    (TRACER, "if (block.size == LobeBlock::kSize) shade_block(batch, lobe.kind, bounce);",
      "if (block.size == LobeBlock::kSize) shade_block(batch, PackedBsdf::Kind::matte, bounce);"),
 ])
 ADAPTIVE = [
