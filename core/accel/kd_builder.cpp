@@ -25,6 +25,10 @@ struct NodeTask {
     std::uint64_t nodes_left = KdNode::kMaxNodes - 1;  ///< That may stand below.
 };
 
+struct ChildTasks {
+    NodeTask below, above;
+};
+
 using References = UnsetVector<KdReference>;
 
 /// Of all primitives that fit a tree, in their order. `cell` becomes what bounds them.
@@ -76,17 +80,20 @@ public:
         if (control_.cancelled) return branch;
         if (references.size() <= kTaskReferences) {
             const std::size_t count = references.size();
+            const std::uint64_t owned = count_owned(references);
             build_node(branch.tree, 0, references, 0, count, task);
+            control_.done.fetch_add(owned, std::memory_order_relaxed);
             return branch;
         }
         const auto cut = choose_cut(references, task);
         if (!cut) {
             make_leaf(branch.tree, 0, references);
+            control_.done.fetch_add(count_owned(references), std::memory_order_relaxed);
             return branch;
         }
         References below(references.size());
         const KdPartCounts parts = partition(references, *cut, below.data());
-        const auto [task_below, task_above] = child_tasks(task, *cut, references.size(), parts);
+        const ChildTasks tasks = child_tasks(task, *cut, references.size(), parts);
         below.resize(parts.below);
         references.resize(parts.above);
 
@@ -95,8 +102,8 @@ public:
         const auto build_half = [&](References half, const NodeTask& of) {
             return std::make_unique<const KdBranch>(build_task(std::move(half), of));
         };
-        fork_join([&, task_below = task_below] { branch.below = build_half(std::move(below), task_below); },
-                  [&, task_above = task_above] { branch.above = build_half(std::move(references), task_above); });
+        fork_join([&] { branch.below = build_half(std::move(below), tasks.below); },
+                  [&] { branch.above = build_half(std::move(references), tasks.above); });
         return branch;
     }
 
@@ -114,45 +121,52 @@ private:
         const std::size_t end = begin + count;
         if (memory.size() < end + count) memory.resize(end + count);
         const KdPartCounts parts = partition(std::span(memory).subspan(begin, count), *cut, memory.data() + end);
-        const auto [task_below, task_above] = child_tasks(task, *cut, count, parts);
+        const ChildTasks tasks = child_tasks(task, *cut, count, parts);
         const auto children = static_cast<std::uint32_t>(tree.nodes.size());
         tree.nodes[slot] = KdNode::inner(cut->axis, cut->plane, children);
         tree.nodes.resize(tree.nodes.size() + 2);
-        build_node(tree, children, memory, end, parts.below, task_below);
-        build_node(tree, children + 1, memory, begin, parts.above, task_above);
+        build_node(tree, children, memory, end, parts.below, tasks.below);
+        build_node(tree, children + 1, memory, begin, parts.above, tasks.above);
     }
 
     void make_leaf(KdSubtree& tree, std::uint32_t slot, std::span<const KdReference> references) {
-        std::uint64_t owned = 0;
         tree.nodes[slot] = KdNode::leaf(static_cast<std::uint32_t>(tree.references.size()),
                                         static_cast<std::uint32_t>(references.size()));
-        for (const KdReference& reference : references) {
-            tree.references.push_back(reference.primitive);
-            owned += reference.owned;
-        }
-        control_.done.fetch_add(owned, std::memory_order_relaxed);
+        for (const KdReference& reference : references) tree.references.push_back(reference.primitive);
     }
 
+    static std::uint64_t count_owned(std::span<const KdReference> references) {
+        std::uint64_t owned = 0;
+        for (const KdReference& reference : references) owned += reference.owned;
+        return owned;
+    }
+
+    // A cut is made where it is kept: a whole copied right after its parts were stored waits.
     std::optional<KdCut> choose_cut(std::span<const KdReference> references, const NodeTask& task) const {
-        if (task.depth >= kKdMaxDepth || task.nodes_left < 2 || references.empty()) return {};
-        const auto cut = input_.split == KdSplit::median ? median_cut(references, task) : sah_cut(references, task);
-        return cut && cut->duplicates <= task.duplicates_left ? cut : std::nullopt;
+        const bool may_be_cut = task.depth < kKdMaxDepth && task.nodes_left >= 2 && !references.empty();
+        auto cut = !may_be_cut                          ? std::optional<KdCut>()
+                   : input_.split == KdSplit::median    ? median_cut(references, task)
+                   : knows_cut(references.size(), task) ? known_cut(references.size(), task)
+                                                        : find_sah_cut(references, task.cell, input_.step_cost);
+        if (cut && (cut->duplicates > task.duplicates_left || cut->cost >= static_cast<double>(references.size())))
+            cut.reset();
+        return cut;
     }
 
     const KdNode* known_node(const NodeTask& task) const {
         return task.known == kNone ? nullptr : &input_.known->nodes[task.known];
     }
 
-    std::optional<KdCut> sah_cut(std::span<const KdReference> references, const NodeTask& task) const {
-        const auto n = references.size();
-        if (n <= static_cast<std::size_t>(input_.leaf_size)) return {};
-        if (const KdNode* known = known_node(task)) {
-            if (!known->is_leaf()) return KdCut{.axis = known->axis(), .plane = known->split()};
-            const bool looked_for = known->count() > static_cast<std::size_t>(input_.known_leaf_size);
-            if (looked_for) return {};
-        }
-        const auto cut = find_sah_cut(references, task.cell, input_.step_cost);
-        return cut && cut->cost < static_cast<double>(n) ? cut : std::nullopt;
+    /// Whether it is known without looking at the `n` references which cut the node has, or that it has none (sah).
+    bool knows_cut(std::size_t n, const NodeTask& task) const {
+        const KdNode* const known = known_node(task);
+        return n <= static_cast<std::size_t>(input_.leaf_size) ||
+               (known && (!known->is_leaf() || known->count() > static_cast<std::size_t>(input_.known_leaf_size)));
+    }
+    std::optional<KdCut> known_cut(std::size_t n, const NodeTask& task) const {
+        const KdNode* const known = known_node(task);
+        if (n <= static_cast<std::size_t>(input_.leaf_size) || !known || known->is_leaf()) return {};
+        return KdCut{.axis = known->axis(), .plane = known->split()};
     }
 
     std::optional<KdCut> median_cut(std::span<const KdReference> references, const NodeTask& task) const {
@@ -168,9 +182,10 @@ private:
                                             : partition_median(references, input_.mesh, cut, input_.bounds, below);
     }
 
-    std::pair<NodeTask, NodeTask> child_tasks(const NodeTask& task, const KdCut& cut, std::size_t references,
-                                              const KdPartCounts& parts) const {
-        NodeTask task_below = task, task_above = task;
+    ChildTasks child_tasks(const NodeTask& task, const KdCut& cut, std::size_t references,
+                           const KdPartCounts& parts) const {
+        ChildTasks tasks{task, task};
+        NodeTask &task_below = tasks.below, &task_above = tasks.above;
         const KdNode* const known = known_node(task);
         const bool cut_there = known && !known->is_leaf();
         task_below.known = cut_there ? known->children() : kNone;
@@ -186,7 +201,7 @@ private:
         const std::uint64_t nodes = task.nodes_left - 2;
         task_below.nodes_left = both == 0 ? 0 : nodes * parts.below / both;
         task_above.nodes_left = nodes - task_below.nodes_left;
-        return {task_below, task_above};
+        return tasks;
     }
 
     const KdBuildInput& input_;

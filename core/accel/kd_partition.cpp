@@ -31,17 +31,19 @@ KdPartCounts partition_sah(std::span<KdReference> references, const TriangleMesh
     // No branch that is hard to foresee: each reference is written to where any of the three kinds comes next, of which
     // only one advances. Those on both sides gather at the end of `below`, downwards.
     KdReference* const end = below + references.size();
+    const auto axis = static_cast<std::size_t>(cut.axis);
     KdPartCounts parts;
     std::size_t both = 0;
-    for (const KdReference reference : references) {
-        const bool is_below = reference.box.hi[cut.axis] <= cut.plane;
-        const bool is_above = !is_below && reference.box.lo[cut.axis] >= cut.plane;
+    for (const KdReference& from : references) {
+        const KdReference reference = from;
+        const float* const box = &from.box.lo.x;
+        const std::size_t ends_beyond = box[axis + 3] > cut.plane, begins_before = box[axis] < cut.plane;
         *(end - 1 - both) = reference;
         below[parts.below] = reference;
         references[parts.above] = reference;
-        parts.below += is_below ? 1 : 0;
-        parts.above += is_above ? 1 : 0;
-        both += !is_below && !is_above ? 1 : 0;
+        parts.below += 1 - ends_beyond;
+        parts.above += ends_beyond & (1 - begins_before);
+        both += ends_beyond & begins_before;
     }
     if (both == 0) return parts;
     const std::span<const KdReference> cut_ones(end - both, both);

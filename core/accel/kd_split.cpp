@@ -6,6 +6,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/accel/kd_split.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -25,18 +26,33 @@ struct NarrowPoint {
     Narrow at[3];
 };
 
-/// Boxes with their triangles.
+/// The number of each axis, first that of the plane.
+struct Axes {
+    std::size_t at[3];
+
+    explicit Axes(std::size_t first) : at{first, (first + 1) % 3, (first + 2) % 3} {}
+};
+
+/// Boxes with their triangles; zeros where none was put.
 struct CutBlock {
     alignas(64) NarrowRow lo[3], hi[3], vertex[3][3];
 
-    HWY_INLINE void put(std::size_t k, const KdReference& reference, const TriangleMesh& mesh, int axis) {
+    HWY_INLINE CutBlock() {
+        const NarrowTag d;
+        for (std::size_t i = 0; i < 3; ++i) {
+            hn::Store(hn::Zero(d), d, lo[i]);
+            hn::Store(hn::Zero(d), d, hi[i]);
+            for (auto& corner : vertex) hn::Store(hn::Zero(d), d, corner[i]);
+        }
+    }
+    HWY_INLINE void put(std::size_t k, const KdReference& reference, const TriangleMesh& mesh, const Axes& axes) {
         const glm::uvec3& t = mesh.triangles[reference.primitive];
-        const Vec3* const corners[3] = {&mesh.positions[t.x], &mesh.positions[t.y], &mesh.positions[t.z]};
-        for (int i = 0; i < 3; ++i) {
-            const int from = (axis + i) % 3;
-            lo[i][k] = reference.box.lo[from];
-            hi[i][k] = reference.box.hi[from];
-            for (int v = 0; v < 3; ++v) vertex[v][i][k] = (*corners[v])[from];
+        const float* const corners[3] = {&mesh.positions[t.x].x, &mesh.positions[t.y].x, &mesh.positions[t.z].x};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t from = axes.at[i];
+            lo[i][k] = (&reference.box.lo.x)[from];
+            hi[i][k] = (&reference.box.hi.x)[from];
+            for (std::size_t v = 0; v < 3; ++v) vertex[v][i][k] = corners[v][from];
         }
     }
     HWY_INLINE NarrowPoint corner(std::size_t v) const {
@@ -127,34 +143,42 @@ HWY_INLINE void split_block(const CutBlock& block, float at, Side& below, Side& 
 /// Stored, to be read one after another.
 struct SideRows {
     alignas(64) NarrowRow lo[3], hi[3];
+    LaneBits reached;  ///< That are not empty.
 
     HWY_INLINE explicit SideRows(const Side& side) {
+        const NarrowTag d;
         for (std::size_t i = 0; i < 3; ++i) {
-            hn::Store(side.lo[i], NarrowTag(), lo[i]);
-            hn::Store(side.hi[i], NarrowTag(), hi[i]);
+            hn::Store(side.lo[i], d, lo[i]);
+            hn::Store(side.hi[i], d, hi[i]);
+        }
+        const auto in_order = [&](std::size_t i) HWY_ATTR { return hn::Le(side.lo[i], side.hi[i]); };
+        reached = bits_of(d, hn::And(in_order(0), hn::And(in_order(1), in_order(2))));
+    }
+    HWY_INLINE void write(std::size_t k, const Axes& axes, Bounds3& box) const {
+        for (std::size_t i = 0; i < 3; ++i) {
+            (&box.lo.x)[axes.at[i]] = lo[i][k];
+            (&box.hi.x)[axes.at[i]] = hi[i][k];
         }
     }
-    HWY_INLINE Bounds3 box(std::size_t k, int axis) const {
-        Bounds3 box;
-        for (int i = 0; i < 3; ++i) {
-            box.lo[(axis + i) % 3] = lo[i][k];
-            box.hi[(axis + i) % 3] = hi[i][k];
-        }
-        return box;
-    }
+    HWY_INLINE std::uint32_t reaches(std::size_t k) const { return reached >> k & 1; }
 };
 
 HWY_ATTR KdPartCounts split_all(std::span<const KdReference> references, const TriangleMesh& mesh, int axis,
                                 float plane, KdReference* below, KdReference* above) {
+    const Axes axes(static_cast<std::size_t>(axis));
     KdPartCounts parts;
+    // So that they come from memory together.
+    constexpr std::size_t kFetched = 64;
     for (std::size_t first = 0; first < references.size(); first += kAtOnce) {
+        for (std::size_t k = first; first % kFetched == 0 && k < std::min(first + kFetched, references.size()); ++k)
+            hwy::Prefetch(&mesh.triangles[references[k].primitive]);
         const std::size_t n = std::min(kAtOnce, references.size() - first);
         CutBlock block;
         std::uint32_t primitive[kAtOnce];
         std::uint32_t owned[kAtOnce];
-        for (std::size_t k = 0; k < kAtOnce; ++k) {
-            const KdReference& reference = references[first + std::min(k, n - 1)];
-            block.put(k, reference, mesh, axis);
+        for (std::size_t k = 0; k < n; ++k) {
+            const KdReference& reference = references[first + k];
+            block.put(k, reference, mesh, axes);
             primitive[k] = reference.primitive;
             owned[k] = reference.owned;
         }
@@ -162,10 +186,16 @@ HWY_ATTR KdPartCounts split_all(std::span<const KdReference> references, const T
         split_block(block, plane, side_below, side_above);
         const SideRows rows_below(side_below), rows_above(side_above);
         for (std::size_t k = 0; k < n; ++k) {
-            const Bounds3 box_below = rows_below.box(k, axis), box_above = rows_above.box(k, axis);
-            const bool reaches_below = !box_below.empty(), reaches_above = !box_above.empty();
-            if (reaches_below) below[parts.below++] = {box_below, primitive[k], owned[k]};
-            if (reaches_above) above[parts.above++] = {box_above, primitive[k], reaches_below ? 0 : owned[k]};
+            KdReference &to_below = below[parts.below], &to_above = above[parts.above];
+            rows_below.write(k, axes, to_below.box);
+            to_below.primitive = primitive[k];
+            to_below.owned = owned[k];
+            rows_above.write(k, axes, to_above.box);
+            to_above.primitive = primitive[k];
+            to_above.owned = owned[k] & (1 - rows_below.reaches(k));
+            // What reaches no farther is written over.
+            parts.below += rows_below.reaches(k);
+            parts.above += rows_above.reaches(k);
         }
     }
     return parts;

@@ -64,6 +64,7 @@ private:
         if (vertices_ == LeafBlock::kMaxVertices) return vertices_;
         alike = static_cast<std::uint16_t>(alike | 1u << vertices_);
         vertex_[vertices_] = vertex;
+        __builtin_prefetch(&mesh_.positions[vertex]);
         return vertices_++;
     }
     float extent(std::uint32_t word) const {

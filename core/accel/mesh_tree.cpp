@@ -45,11 +45,20 @@ UnsetVector<float> place_leaves(const TriangleMesh& mesh, KdTree& tree, const Bu
             std::size_t triangles = 0;
             each_leaf(i, [&](const KdNode& leaf) { triangles += leaf.count(); });
             parts[i].data.reserve(6 * triangles);
-            each_leaf(i, [&](KdNode& leaf) {
-                const std::uint32_t first = leaf.first();
+            // The triangles of each leaf come from memory while the blocks of the one before are written.
+            KdNode* leaf_before = nullptr;
+            const auto write = [&](KdNode& leaf) {
+                const auto names = std::span(tree.references).subspan(leaf.first(), leaf.count());
                 leaf = KdNode::leaf(static_cast<std::uint32_t>(parts[i].data.size() / LeafBlock::kUnit), leaf.count());
-                append_leaf_blocks(mesh, std::span(tree.references).subspan(first, leaf.count()), parts[i].data);
+                append_leaf_blocks(mesh, names, parts[i].data);
+            };
+            each_leaf(i, [&](KdNode& leaf) {
+                const auto names = std::span(tree.references).subspan(leaf.first(), std::min(leaf.count(), 32u));
+                for (const std::uint32_t name : names) __builtin_prefetch(&mesh.triangles[name]);
+                if (leaf_before) write(*leaf_before);
+                leaf_before = &leaf;
             });
+            if (leaf_before) write(*leaf_before);
         }
     });
     std::size_t size = 0;

@@ -1,0 +1,131 @@
+#include "core/accel/kd_cut.h"
+#include "core/math/isa.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace rayuela::test {
+namespace {
+
+/// Bins of boxes that span this are two wide, their planes exact.
+constexpr int kSpan = 64;
+constexpr std::size_t kMostExact = 32;
+
+/// Boxes with whole coordinates, a third of them flat along an axis, that span 0 to kSpan.
+std::vector<KdReference> random_references(std::size_t count, std::mt19937& random) {
+    const auto whole = [&] { return static_cast<float>(random() % (kSpan + 1)); };
+    std::vector<KdReference> references(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Bounds3& box = references[i].box;
+        box.extend(Vec3(whole(), whole(), whole()));
+        box.hi = glm::min(box.lo + glm::floor(Vec3(whole(), whole(), whole()) / 8.0f), Vec3(kSpan));
+        if (const int axis = static_cast<int>(random() % 9); axis < 3) box.hi[axis] = box.lo[axis];
+        references[i].primitive = i;
+    }
+    references.front().box.lo = Vec3(0);
+    references.back().box.hi = Vec3(kSpan);
+    return references;
+}
+
+struct Sides {
+    std::size_t below = 0, above = 0;
+};
+
+Sides sides_of(const std::vector<KdReference>& references, int axis, float plane) {
+    Sides sides;
+    for (const KdReference& reference : references) {
+        const float lo = reference.box.lo[axis], hi = reference.box.hi[axis];
+        sides.below += lo < plane || hi <= plane ? 1 : 0;
+        sides.above += hi > plane ? 1 : 0;
+    }
+    return sides;
+}
+
+double area_of(const Bounds3& cell) {
+    const Vec3d e = Vec3d(cell.hi) - Vec3d(cell.lo);
+    return e.x * e.y + e.y * e.z + e.z * e.x;
+}
+
+/// Infinite where the plane does not lie within the cell.
+double cost_of(const std::vector<KdReference>& references, const Bounds3& cell, int axis, float plane) {
+    if (!(plane > cell.lo[axis] && plane < cell.hi[axis])) return INFINITY;
+    const Sides sides = sides_of(references, axis, plane);
+    Bounds3 below = cell, above = cell;
+    below.hi[axis] = above.lo[axis] = plane;
+    const double tests =
+        area_of(below) * static_cast<double>(sides.below) + area_of(above) * static_cast<double>(sides.above);
+    return (sides.below == 0 || sides.above == 0 ? 0.8 : 1.0) * (1 + tests / area_of(cell));
+}
+
+double least_cost(const std::vector<KdReference>& references, const Bounds3& cell) {
+    double least = INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto offer = [&](float plane) { least = std::min(least, cost_of(references, cell, axis, plane)); };
+        if (references.size() > kMostExact) {
+            for (int k = 0; k <= 32; ++k) offer(static_cast<float>(k * kSpan / 32));
+            continue;
+        }
+        for (const KdReference& reference : references) {
+            offer(reference.box.lo[axis]);
+            offer(reference.box.hi[axis]);
+        }
+    }
+    return least;
+}
+
+}  // namespace
+
+/// Also where a byte no longer holds the counts of bins.
+TEST(SahCut, IsTheCheapestWithEveryInstructionSet) {
+    std::mt19937 random(1);
+    for (const std::size_t count :
+         {1u, 2u, 3u, 7u, 16u, 17u, 31u, 32u, 33u, 64u, 255u, 256u, 257u, 510u, 511u, 1500u}) {
+        for (int round = 0; round < 20; ++round) {
+            const auto references = random_references(count, random);
+            Bounds3 cell{Vec3(0), Vec3(kSpan)};
+            if (round % 2 != 0) cell.extend(Vec3(-3, kSpan + 5, 7));
+            const double least = least_cost(references, cell);
+            for (const std::string_view isa : instruction_sets()) {
+                use_instruction_set(isa);
+                const auto cut = find_sah_cut(references, cell, 1);
+                ASSERT_EQ(cut.has_value(), least < INFINITY) << isa << ' ' << count;
+                if (!cut) continue;
+                EXPECT_NEAR(cut->cost, least, 1e-12 * least) << isa << ' ' << count;
+                EXPECT_NEAR(cost_of(references, cell, cut->axis, cut->plane), least, 1e-12 * least)
+                    << isa << ' ' << count;
+                const Sides sides = sides_of(references, cut->axis, cut->plane);
+                EXPECT_EQ(cut->duplicates, sides.below + sides.above - count) << isa << ' ' << count;
+            }
+        }
+    }
+    use_instruction_set(instruction_sets().front());
+}
+
+/// By the order of axes and planes, not by which lanes they come to.
+TEST(SahCut, OfEqualCutsIsTheFirstWithEveryInstructionSet) {
+    const Bounds3 cell{Vec3(0), Vec3(kSpan)};
+    for (const std::size_t count : {8u, 64u}) {
+        // As good along each axis and from either end.
+        std::vector<KdReference> references(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const float at = i % 2 == 0 ? 8 : kSpan - 16;
+            references[i].box = {Vec3(at), Vec3(at + 8)};
+        }
+        // Where boxes begin comes before where they end; bins, 1.5 wide from 8 on, come in their order.
+        const float first = count <= kMostExact ? 48 : 17;
+        EXPECT_EQ(cost_of(references, cell, 0, first), cost_of(references, cell, 0, kSpan - first));
+        for (const std::string_view isa : instruction_sets()) {
+            use_instruction_set(isa);
+            const auto cut = find_sah_cut(references, cell, 1);
+            ASSERT_TRUE(cut);
+            EXPECT_EQ(cut->axis, 0) << isa << ' ' << count;
+            EXPECT_EQ(cut->plane, first) << isa << ' ' << count;
+        }
+    }
+    use_instruction_set(instruction_sets().front());
+}
+
+}  // namespace rayuela::test
