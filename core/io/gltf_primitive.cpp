@@ -97,6 +97,9 @@ Expected<std::shared_ptr<const TriangleMesh>> PrimitiveReader::build(const Key& 
         context_.warn(place, "has no triangles and is left out");
         return nullptr;
     }
+    mesh.positions.reserve(count);
+    mesh.normals.reserve(normals.size() / 3);
+    mesh.uvs.reserve(uvs.size() / 2);
     for (std::size_t i = 0; i < count; ++i) {
         mesh.positions.emplace_back((*positions)[3 * i], (*positions)[3 * i + 1], (*positions)[3 * i + 2]);
         if (!normals.empty()) mesh.normals.emplace_back(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);

@@ -11,6 +11,6 @@ namespace rayuela {
 /// normal tuple one vertex. Material libraries are not read.
 MeshResult read_obj(const std::filesystem::path& path, Problems* warnings = nullptr);
 /// The same from memory; `name` stands in messages.
-MeshResult parse_obj(std::string_view text, const std::string& name, Problems* warnings = nullptr);
+MeshResult parse_obj(std::string text, const std::string& name, Problems* warnings = nullptr);
 
 }  // namespace rayuela

@@ -14,6 +14,7 @@
 namespace rayuela {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::TempFolder;
 
@@ -167,6 +168,20 @@ TEST(Obj, ErrorsNameTheLine) {
     };
     for (const auto& [text, message] : cases)
         EXPECT_THAT(error_of(parse_obj(text, "a.obj")), HasSubstr(message)) << text;
+}
+
+TEST(Obj, ErrorsComeInTheOrderOfTheLines) {
+    const auto mesh = parse_obj("v 0 0 0 # a comment\r\nv 1e99 0 0\r\nf 1 x 2\nv 0 1e99 0\nvn 1 2\nf 1 2 9", "a.obj");
+    ASSERT_FALSE(mesh);
+    std::vector<std::string> places;
+    for (const Problem& problem : mesh.error()) places.push_back(problem.place);
+    EXPECT_THAT(places, ElementsAre("line 2", "line 3", "line 4", "line 5"));
+    std::string many;
+    for (int i = 0; i < 20; ++i) many += i % 2 ? "v 1 2\n" : "v 1 2 1e99\n";
+    const auto cut = parse_obj(many, "a.obj");
+    ASSERT_FALSE(cut);
+    ASSERT_EQ(cut.error().size(), 10u);
+    EXPECT_EQ(cut.error().back().place, "line 10");
 }
 
 TEST(Obj, ForwardReferencesAndContinuedLines) {
