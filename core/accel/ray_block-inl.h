@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
 /// Rays that are traced together: enough to keep the lanes full, few enough for the cache.
-inline constexpr std::size_t kBlockRays = 4096;
+inline constexpr std::size_t kBlockRays = 1024;
 
 /// RayBlock::depth_pad for a direction of depth 1 or less: above what a t loses that is too small for a float.
 inline constexpr float kLeastDepthPad = 0x1p-148f;
