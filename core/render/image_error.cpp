@@ -67,14 +67,16 @@ ImageError image_error(std::span<const Vec4> image, const ReferencePair& referen
 }
 
 double mean_ratio_uncertainty(const ReferencePair& reference) {
-    // (A - B) / 2 has the variance of R. The pixels of a reference are independent; the channels of a pixel are not.
-    double variance = 0, truth = 0;
+    // (A - B) / 2 has the variance of R. The channels of a pixel are not independent, and the pixels of a reference only
+    // where its sampler made them so: how far the whole halves are apart says when they are not.
+    double variance = 0, sum = 0, truth = 0;
     for (std::size_t i = 0; i < reference.a.size(); ++i) {
         const double half = 0.5 * channel_mean(Vec3d(reference.a[i]) - Vec3d(reference.b[i]));
         variance += half * half;
+        sum += half;
         truth += channel_mean(reference.mean(i));
     }
-    return std::sqrt(variance) / truth;
+    return std::max(std::sqrt(variance), std::abs(sum)) / truth;
 }
 
 }  // namespace rayuela

@@ -81,8 +81,11 @@ TEST(ImageError, PixelsThatAreNoNumberAreBlackAndCounted) {
 }
 
 TEST(ImageError, UncertaintyOfTheReferencesMean) {
-    // A - B = 0.2 in every pixel: each mean is uncertain by 0.1, the mean of n by 0.1 / sqrt(n), relative to 1.
-    const Pixels a = grey(100, 1.1f), b = grey(100, 0.9f);
+    // |A - B| = 0.2 in every pixel: each is uncertain by 0.1, the mean of n that are independent by 0.1 / sqrt(n), relative
+    // to 1. The mean of those that all err alike is as uncertain as each of them.
+    Pixels a = grey(100, 1.1f), b = grey(100, 0.9f);
+    EXPECT_NEAR(mean_ratio_uncertainty({a, b}), 0.1, 1e-7);
+    for (std::size_t i = 0; i < a.size(); i += 2) std::swap(a[i], b[i]);
     EXPECT_NEAR(mean_ratio_uncertainty({a, b}), 0.01, 1e-7);
 }
 
