@@ -2,6 +2,7 @@
 #include "app/bench_convergence_plot.h"
 #include "app/bench_convergence_report.h"
 #include "app/progress_bar.h"
+#include "app/write_displayed.h"
 #include "app/write_text.h"
 #include "ui/assets_path.h"
 
@@ -91,7 +92,24 @@ Result<std::vector<ConvergencePlan>> make_plans(const ConvergenceOptions& option
     return plans;
 }
 
+bool is_svg(const std::filesystem::path& plot) {
+    return plot.extension() == ".svg";
+}
+
+Result<void> check_plot(const std::filesystem::path& plot) {
+    if (plot.empty() || is_svg(plot) || plot.extension() == ".png") return {};
+    return fail(plot.string(), "--plot", "must end in .svg or .png");
+}
+
+Result<void> write_plot(const std::filesystem::path& plot, const std::vector<SceneConvergence>& scenes) {
+    if (plot.empty()) return {};
+    const PlotSheet sheet = convergence_plot(scenes);
+    if (is_svg(plot)) return write_text(plot, plot_svg(sheet));
+    return plot_image(sheet).and_then([&](Image image) { return write_displayed(plot, std::move(image)); });
+}
+
 Result<void> run_convergence(const ConvergenceOptions& options) {
+    if (auto writable = check_plot(options.plot); !writable) return writable;
     const auto plans = make_plans(options);
     if (!plans) return tl::unexpected(plans.error());
     std::vector<SceneConvergence> scenes;
@@ -115,7 +133,7 @@ Result<void> run_convergence(const ConvergenceOptions& options) {
                "1 / samples; < reached by the first image already; ! the interval does not contain 1.\n");
     if (const std::string table = comparison_table(scenes); !table.empty()) fmt::print("\n{}", table);
     return write_text(options.json, convergence_json(scenes).dump(2) + '\n').and_then([&] {
-        return write_text(options.plot, convergence_svg(scenes));
+        return write_plot(options.plot, scenes);
     });
 }
 
@@ -141,7 +159,7 @@ BenchKind add_bench_convergence(CLI::App& bench) {
     command.add_option("--compare", options->compare, "Measure values of a setting side by side, NAME=VALUE,VALUE...")
         ->allow_extra_args(false);
     command.add_option("--json", options->json, "Write all figures to this file");
-    command.add_option("--plot", options->plot, "Write error over time to this SVG file");
+    command.add_option("--plot", options->plot, "Draw error over time: .svg or .png");
     return {&command, [options] { return run_convergence(*options); }};
 }
 

@@ -1,6 +1,5 @@
 #include "app/subcommands.h"
-#include "core/io/image_io.h"
-#include "core/math/srgb.h"
+#include "app/write_displayed.h"
 #include "ui/application.h"
 #include "ui/assets_path.h"
 
@@ -38,11 +37,7 @@ Result<void> run_screenshot(const ScreenshotOptions& options) {
     editor.open(options.scene);
     while (editor.is_loading()) application.draw_frame();
     if (editor.file() != options.scene) return tl::unexpected(errors_of(editor.log));
-    Image image = application.screenshot(options.spp);
-    for (Vec4& pixel : image.pixels) {
-        for (int channel = 0; channel < 3; ++channel) pixel[channel] = srgb_to_linear(pixel[channel]);
-    }
-    return write_image(options.output, image);
+    return write_displayed(options.output, application.screenshot(options.spp));
 }
 
 }  // namespace rayuela

@@ -2,6 +2,7 @@
 
 #include "ui/commands.h"
 #include "ui/frame_pacing.h"
+#include "ui/imgui_session.h"
 #include "ui/layout.h"
 #include "ui/panels/panels.h"
 #include "ui/theme.h"
@@ -18,7 +19,6 @@
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_opengl3.h>
 #include <imgui_internal.h>
-#include <implot.h>
 
 #include <algorithm>
 #include <atomic>
@@ -32,38 +32,6 @@ namespace {
 double now_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-/// ImGui, ImPlot and their backends for one GlContext.
-class ImGuiSession {
-public:
-    explicit ImGuiSession(const GlContext& context, const std::filesystem::path& folder) : window_(context.window()) {
-        IMGUI_CHECKVERSION();
-        ImGui::CreateContext();
-        ImPlot::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.ConfigFlags |= ImGuiConfigFlags_DockingEnable | ImGuiConfigFlags_NavEnableKeyboard;
-        io.ConfigWindowsMoveFromTitleBarOnly = true;
-        io.ConfigDockingTransparentPayload = true;
-        io.ConfigErrorRecoveryEnableAssert = false;
-        if (!folder.empty()) layout_file_ = (folder / "layout.ini").string();
-        io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
-        load_fonts();
-        if (window_) ImGui_ImplGlfw_InitForOpenGL(window_, true);
-        ImGui_ImplOpenGL3_Init("#version 330 core");
-    }
-    ImGuiSession(const ImGuiSession&) = delete;
-    ImGuiSession& operator=(const ImGuiSession&) = delete;
-    ~ImGuiSession() {
-        ImGui_ImplOpenGL3_Shutdown();
-        if (window_) ImGui_ImplGlfw_Shutdown();
-        ImPlot::DestroyContext();
-        ImGui::DestroyContext();
-    }
-
-private:
-    GLFWwindow* window_;
-    std::string layout_file_;
-};
 
 }  // namespace
 
@@ -185,14 +153,7 @@ void Application::Impl::draw(bool present) {
     editor.view.reset_layout = false;
     viewport.draw(editor);
     draw_panels();
-    ImGui::Render();
-
-    const glm::ivec2 size = context->framebuffer_size();
-    glViewport(0, 0, size.x, size.y);
-    glDisable(GL_SCISSOR_TEST);
-    glClearColor(0, 0, 0, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    render_imgui(*context, {0, 0, 0});
     if (present) context->present();
     update_title();
 }

@@ -65,12 +65,26 @@ def test_figures_agree_with_rendering_and_measuring_by_hand():
 
 def test_adaptive_beside_fixed():
     run("bench", "convergence", "ball.scene.json", "--references", ".", "--seeds", 2, "--spp", "32,128", "--json", "d.json",
-        "--compare", "target_error=0,0.9")
+        "--plot", "d.png", "--compare", "target_error=0,0.9")
+    width, height = struct.unpack(">II", pathlib.Path("d.png").read_bytes()[16:24])
+    assert width > height > 300, (width, height)
     variants = json.loads(pathlib.Path("d.json").read_text())[0]["variants"]
     errors = {name: [c["relmse"]["value"] for c in v["checkpoints"]] for name, v in variants.items()}
     fixed, adaptive = errors["target_error=0"], errors["target_error=0.9"]
     assert adaptive[0] == fixed[0] > fixed[1], "nothing stops before 32 samples"
     assert adaptive[1] == adaptive[0], "so rough a target is reached by then"
+
+
+def test_an_exact_image_has_a_plot():
+    pathlib.Path("sky.scene.json").write_text("""{"rayuela": 1, "film": {"width": 8, "height": 8},
+      "environment": {"type": "constant", "radiance": [0.5, 0.5, 0.5]}, "objects": []}""")
+    run("reference", "sky.scene.json", "-o", "sky_a.pfm,sky_b.pfm", "--spp", 4)
+    for plot in ("sky.svg", "sky.png"):
+        run("bench", "convergence", "sky.scene.json", "--references", ".", "--seeds", 2, "--spp", 2, "--json", "sky.json",
+            "--plot", plot)
+        assert pathlib.Path(plot).stat().st_size > 100, plot
+    checkpoints = json.loads(pathlib.Path("sky.json").read_text())[0]["variants"][""]["checkpoints"]
+    assert all(c["relmse"]["value"] == 0 for c in checkpoints), checkpoints
 
 
 def test_brute_force_agrees():
@@ -88,6 +102,7 @@ def test_mistakes_are_named():
         (bench + ("--references", ".", "--set", "kd_leaf_size=0"), 1, "kd_leaf_size"),
         (bench + ("--references", ".", "--set", "target_error=nan"), 1, "target_error cannot be \"nan\""),
         (bench + ("--references", ".", "--compare", "sampler"), 1, "NAME=VALUE"),
+        (bench + ("--references", ".", "--plot", "d.pdf"), 1, "d.pdf: --plot: must end in .svg or .png"),
         (bench + ("--references", ".", "--seeds", "0"), 2, "--seeds"),
         (bench + ("--references", ".", "--spp", "0"), 2, "--spp"),
         (("bench",), 2, "subcommand"),
@@ -117,7 +132,8 @@ def test_film_takes_the_size_of_the_reference():
 
 def test_examples_have_references():
     names = {path.name.split("_a.")[0] for path in (assets / "references").glob("*_a.exr")}
-    assert len(names) == 6, names
+    scenes = {path.name.split(".")[0] for path in (assets / "scenes").glob("*.scene.json")}
+    assert names == scenes, names ^ scenes
     run("bench", "convergence", "--seeds", 2, "--spp", 2, "--json", "e.json")
     scenes = json.loads(pathlib.Path("e.json").read_text())
     assert {scene["scene"] for scene in scenes} == names, names

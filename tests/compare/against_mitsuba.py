@@ -2,16 +2,19 @@
 """Run time against error, Rayuela beside Mitsuba 3 in the same run, one thread each and in turns.
 
     python3 -m venv venv && venv/bin/pip install mitsuba numpy        # llvm_ad_rgb also wants libLLVM
-    venv/bin/python tests/compare/against_mitsuba.py RAYUELA SCENE [REFERENCE_A REFERENCE_B] [--spp N] [--rounds N] [--variant V]
+    venv/bin/python tests/compare/against_mitsuba.py RAYUELA SCENE [REFERENCE_A REFERENCE_B] [--spp N] [--mitsuba-spp N]
+        [--rounds N] [--error E] [--variant V]
 
 The references are two .exr or .pfm images of the scene made by `rayuela reference` or anybody else, and both render at their
 size; without them they are those of assets/references. CPU seconds are those of loading and rendering; Mitsuba's are given
-for its second render too, when its kernels are compiled.
+for its second render too, when its kernels are compiled. Seconds to the error E count as if errors fell as 1/N from what was
+rendered; choose for each the samples with which it comes close to E. Intervals are of 95%, by bootstrap over the rounds.
 """
 
 import argparse
 import json
 import pathlib
+import random
 import statistics
 import subprocess
 import sys
@@ -69,19 +72,19 @@ def render_mitsuba(arguments):
             image = np.array(mi.render(scene, spp=arguments.spp, seed=seed))
             seconds.append(load + time.process_time() - start)
     np.save(arguments.output, image[:, :, :3])
-    print(json.dumps(seconds))
+    print("seconds", json.dumps(seconds))
 
 
 def run_mitsuba(arguments, seed, folder):
     output = folder / "mitsuba.npy"
     command = [sys.executable, __file__, arguments.rayuela, arguments.scene, *arguments.references, "--spp",
-               str(arguments.spp), "--size", arguments.size, "--variant", arguments.variant, "--seed", str(seed), "--output",
-               str(output)]
+               str(arguments.mitsuba_spp or arguments.spp), "--size", arguments.size, "--variant", arguments.variant, "--seed",
+               str(seed), "--output", str(output)]
     done = subprocess.run(["taskset", "-c", "0", *command], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(done.stderr.strip())
-    # Mitsuba's warnings are printed before.
-    return json.loads(done.stdout.splitlines()[-1]), np.load(output).astype(np.float64)
+    # Mitsuba prints warnings too.
+    return json.loads(done.stdout.rpartition("seconds ")[2]), np.load(output).astype(np.float64)
 
 
 def run_rayuela(arguments, seed, folder):
@@ -92,12 +95,28 @@ def run_rayuela(arguments, seed, folder):
     return json.loads(stats.read_text())["cpu_seconds"], read_pfm(image)
 
 
+def seconds_to(error, runs):
+    return statistics.median(run[0] for run in runs) * statistics.fmean(run[1] for run in runs) / error
+
+
+def interval(error, theirs, ours):
+    """Of how many times the seconds of ours theirs take; rounds are drawn for both, because they ran side by side."""
+    generator = random.Random(4)
+    ratios = []
+    for _ in range(2000):
+        rounds = generator.choices(range(len(ours)), k=len(ours))
+        ratios.append(seconds_to(error, [theirs[i] for i in rounds]) / seconds_to(error, [ours[i] for i in rounds]))
+    return sorted(ratios)[50], sorted(ratios)[1949]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rayuela")
     parser.add_argument("scene")
     parser.add_argument("references", nargs="*")
     parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--mitsuba-spp", type=int, help="samples of Mitsuba, if not as many")
+    parser.add_argument("--error", type=float, default=1e-3)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--variant", default="llvm_ad_rgb")
     parser.add_argument("--seed", type=int, default=0, help=argparse.SUPPRESS)
@@ -127,14 +146,14 @@ def main():
             error = rel_mse(image, *halves), image.mean() / mean
             rows[names[1]].append((times[0], *error))
             rows[names[2]].append((times[1], *error))
-    print(f"{'':24}{'CPU s':>8}{'relMSE':>11}{'mean ratio':>12}{'s to 0.001':>12}{'times':>7}")
-    best = None
+    ours = rows["rayuela"]
+    print(f"{'':24}{'CPU s':>8}{'relMSE':>11}{'mean ratio':>12}{f's to {arguments.error}':>12}{'times':>7}{'95%':>14}")
     for name, runs in rows.items():
         seconds = statistics.median(run[0] for run in runs)
         error, mean = (statistics.fmean(run[k] for run in runs) for k in (1, 2))
-        to_error = seconds * error / 1e-3
-        best = best or to_error
-        print(f"{name:24}{seconds:8.2f}{error:11.6f}{mean:12.5f}{to_error:12.2f}{to_error / best:7.2f}")
+        to_error = seconds_to(arguments.error, runs)
+        times, (low, high) = to_error / seconds_to(arguments.error, ours), interval(arguments.error, runs, ours)
+        print(f"{name:24}{seconds:8.2f}{error:11.6f}{mean:12.5f}{to_error:12.2f}{times:7.2f}{f'{low:.2f} - {high:.2f}':>14}")
 
 
 main()
