@@ -2,6 +2,7 @@
 #include "app/bench_convergence_plot.h"
 #include "app/bench_convergence_report.h"
 #include "app/progress_bar.h"
+#include "app/subcommands.h"
 #include "app/write_displayed.h"
 #include "app/write_text.h"
 #include "ui/assets_path.h"
@@ -96,9 +97,12 @@ bool is_svg(const std::filesystem::path& plot) {
     return plot.extension() == ".svg";
 }
 
-Result<void> check_plot(const std::filesystem::path& plot) {
-    if (plot.empty() || is_svg(plot) || plot.extension() == ".png") return {};
-    return fail(plot.string(), "--plot", "must end in .svg or .png");
+/// Before minutes are spent on what could not be written.
+Result<void> check_outputs(const ConvergenceOptions& options) {
+    const std::filesystem::path& plot = options.plot;
+    if (!plot.empty() && !is_svg(plot) && plot.extension() != ".png")
+        return fail(plot.string(), "--plot", "must end in .svg or .png");
+    return check_folder(plot).and_then([&] { return check_folder(options.json); });
 }
 
 Result<void> write_plot(const std::filesystem::path& plot, const std::vector<SceneConvergence>& scenes) {
@@ -109,7 +113,7 @@ Result<void> write_plot(const std::filesystem::path& plot, const std::vector<Sce
 }
 
 Result<void> run_convergence(const ConvergenceOptions& options) {
-    if (auto writable = check_plot(options.plot); !writable) return writable;
+    if (auto writable = check_outputs(options); !writable) return writable;
     const auto plans = make_plans(options);
     if (!plans) return tl::unexpected(plans.error());
     std::vector<SceneConvergence> scenes;

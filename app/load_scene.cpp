@@ -32,6 +32,10 @@ Result<Scene> load_scene(const std::filesystem::path& file, const SceneOverrides
 
 Result<void> check_output(const std::filesystem::path& file) {
     if (!is_writable_image(file)) return fail(file.string(), "", "unknown image type; use .png, .exr, .pfm or .hdr");
+    return check_folder(file);
+}
+
+Result<void> check_folder(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.parent_path();
     std::error_code error;
     if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {

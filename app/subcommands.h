@@ -69,5 +69,7 @@ Result<Scene> load_scene(const std::filesystem::path& file, const SceneOverrides
 
 /// An error unless `file` can be written as an image: a known extension in a folder that exists.
 Result<void> check_output(const std::filesystem::path& file);
+/// An error where the folder of an output is missing.
+Result<void> check_folder(const std::filesystem::path& file);
 
 }  // namespace rayuela

@@ -72,7 +72,10 @@ void draw_sheet(const PlotSheet& sheet, const ImVec2& size) {
     ImGui::Begin("plots", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
     for (std::size_t i = 0; i < sheet.panels.size(); ++i) {
         if (i % static_cast<std::size_t>(sheet.columns) != 0) ImGui::SameLine();
+        // Titles may repeat.
+        ImGui::PushID(static_cast<int>(i));
         draw_panel(sheet, sheet.panels[i]);
+        ImGui::PopID();
     }
     ImGui::End();
 }

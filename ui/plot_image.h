@@ -18,7 +18,7 @@ struct PlotCurve {
 struct PlotPanel {
     std::string title;
     std::vector<PlotCurve> curves;
-    std::vector<double> guide_x, guide_y;  ///< A dotted line.
+    std::vector<double> guide_x, guide_y;  ///< A faint line; may be empty.
 };
 struct PlotSheet {
     std::string x_label, y_label;

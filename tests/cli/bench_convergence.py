@@ -103,6 +103,8 @@ def test_mistakes_are_named():
         (bench + ("--references", ".", "--set", "target_error=nan"), 1, "target_error cannot be \"nan\""),
         (bench + ("--references", ".", "--compare", "sampler"), 1, "NAME=VALUE"),
         (bench + ("--references", ".", "--plot", "d.pdf"), 1, "d.pdf: --plot: must end in .svg or .png"),
+        (bench + ("--references", ".", "--plot", "no/such/d.svg"), 1, "there is no folder no/such"),
+        (bench + ("--references", ".", "--json", "no/such/d.json"), 1, "there is no folder no/such"),
         (bench + ("--references", ".", "--seeds", "0"), 2, "--seeds"),
         (bench + ("--references", ".", "--spp", "0"), 2, "--spp"),
         (("bench",), 2, "subcommand"),
