@@ -24,7 +24,6 @@ import os
 import pathlib
 import random
 import re
-import shutil
 import statistics
 import subprocess
 import sys
@@ -172,11 +171,9 @@ def interval(ratios):
 def ratios_of_time(without, scene, rounds):
     ratios = []
     for i in range(rounds):
-        if i % 2 == 0:
-            ours, theirs = seconds([whole, without], scene)
-        else:
-            theirs, ours = seconds([without, whole], scene)
-        ratios.append(ours / theirs)
+        order = (whole, without) if i % 2 == 0 else (without, whole)
+        taken = dict(zip(order, seconds(order, scene)))
+        ratios.append(taken[whole] / taken[without])
     return ratios
 
 
