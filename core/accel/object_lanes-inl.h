@@ -157,13 +157,16 @@ public:
           candidates_(candidates),
           triangles_(block, rays),
           packet_(block, rays),
-          spheres_(block, rays, leaves_.exact_spheres.data()) {}
+          spheres_(block, rays, leaves_.exact_spheres.data()),
+          any_triangles_(leaves_.triangle_runs.size() > kRunPadding),
+          any_spheres_(!leaves_.spheres.empty()) {}
 
     HWY_INLINE void start(std::size_t slot, std::size_t i) {
         const std::uint32_t id = block_.id[i];
         const float end = t_end(rays_[id], hits_[id]);
-        triangles_.start(slot, i, end);
-        if (!leaves_.spheres.empty()) spheres_.start(slot, i, end);
+        ray_of_slot_[slot] = static_cast<std::uint32_t>(i);
+        if (any_triangles_) triangles_.start(slot, i, end);
+        if (any_spheres_) spheres_.start(slot, i, end);
     }
 
     HWY_INLINE void prefetch(const LeafVisit&) const {}
@@ -174,23 +177,23 @@ public:
             const ObjectLeaf& leaf = leaves_.leaves[visit.first];
             add_triangles(visit.slot, leaf);
             add_spheres(visit.slot, leaf);
-            test_others(triangles_.ray(visit.slot), leaf);
+            test_others(ray_of_slot_[visit.slot], leaf);
         }
         decide_triangles();
         decide_spheres();
         for (const LeafVisit& visit : visits) {
-            go_on<kQuery>(visit.slot, triangles_.ray(visit.slot), block_, rays_, hits_, slots,
+            go_on<kQuery>(visit.slot, ray_of_slot_[visit.slot], block_, rays_, hits_, slots,
                           [&](std::size_t slot, float end) HWY_ATTR {
-                              triangles_.set_end(slot, end);
-                              spheres_.set_end(slot, end);
+                              if (any_triangles_) triangles_.set_end(slot, end);
+                              if (any_spheres_) spheres_.set_end(slot, end);
                           });
         }
     }
 
     HWY_INLINE void start_packet(std::size_t first, LaneBits lanes) {
         first_ = first;
-        packet_.start(first, lanes, hits_);
-        if (leaves_.spheres.empty()) return;
+        if (any_triangles_) packet_.start(first, lanes, hits_);
+        if (!any_spheres_) return;
         for (; lanes != 0; lanes &= lanes - 1) {
             const std::size_t lane = first_lane(lanes);
             const std::uint32_t id = block_.id[first + lane];
@@ -215,8 +218,8 @@ public:
         for (LaneBits rest = lanes; rest != 0; rest &= rest - 1) {
             go_on<kQuery>(first_lane(rest), first_ + first_lane(rest), block_, rays_, hits_, packet,
                           [&](std::size_t lane, float end) HWY_ATTR {
-                              packet_.set_end(lane, end);
-                              spheres_.set_end(lane, end);
+                              if (any_triangles_) packet_.set_end(lane, end);
+                              if (any_spheres_) spheres_.set_end(lane, end);
                           });
         }
     }
@@ -239,7 +242,7 @@ private:
 
     HWY_INLINE void decide_triangles() {
         triangles_.decide([&](std::uint32_t slot, std::uint32_t name, const ShapeHit& hit) HWY_ATTR {
-            keep_triangle(leaves_.triangles[name], hit, hits_[block_.id[triangles_.ray(slot)]]);
+            keep_triangle(leaves_.triangles[name], hit, hits_[block_.id[ray_of_slot_[slot]]]);
         });
     }
 
@@ -295,7 +298,9 @@ private:
     TriangleLanes triangles_;
     TrianglePacket packet_;
     SphereLanes spheres_;
-    std::size_t first_ = 0;  ///< Ray of the packet.
+    const bool any_triangles_, any_spheres_;  ///< Whether any leaf has them.
+    std::uint32_t ray_of_slot_[kSlots];       ///< In the block.
+    std::size_t first_ = 0;                   ///< Ray of the packet.
 };
 
 }  // namespace rayuela::HWY_NAMESPACE

@@ -20,19 +20,18 @@ public:
         : block_(block), rays_(rays), spheres_(spheres) {}
 
     HWY_INLINE void start(std::size_t slot, std::size_t i, float t_max) {
+        // Rays mostly come in their order.
+        if (i - unit_.first >= kDoubles) unit_ = UnitDirections(block_, rays_, i);
+        const std::size_t k = i - unit_.first;
         ray_of_slot_[slot] = block_.id[i];
-        const Ray& ray = rays_[block_.id[i]];
-        const Vec3d d(ray.direction);
-        const double length = glm::length(d);
-        const Vec3 n(d / length);
-        for (int axis = 0; axis < 3; ++axis) {
-            origin_[axis][slot] = ray.origin[axis];
-            direction_[axis][slot] = n[axis];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin_[axis][slot] = block_.origin[axis][i];
+            direction_[axis][slot] = unit_.direction[axis][k];
         }
         pad_[slot] = block_.pad[i];
         previous_[slot] = kNone;
-        length_[slot] = length;
-        begin_[slot] = static_cast<float>(length * ray.t_min) * (1 - 4 * kUnitRoundoff);
+        length_[slot] = unit_.length[k];
+        begin_[slot] = unit_.begin[k];
         set_end(slot, t_max);
     }
     HWY_INLINE void set_end(std::size_t slot, float t_max) {
@@ -72,6 +71,38 @@ public:
     }
 
 private:
+    /// Of rays first to first + kDoubles of a block.
+    struct UnitDirections {
+        std::size_t first = kBlockRays;
+        alignas(64) float direction[3][kDoubles], begin[kDoubles];  ///< `begin`: as SphereFilterRays has it.
+        alignas(64) double length[kDoubles];
+
+        UnitDirections() = default;
+        UnitDirections(const RayBlock& block, std::span<const Ray> rays, std::size_t i) : first(i) {
+            const DoubleTag dd;
+            const hn::Rebind<float, DoubleTag> df;
+            hn::Vec<decltype(df)> along[4];
+            alignas(64) float t_min[kDoubles];
+            const Ray* ray[kDoubles];
+            for (std::size_t k = 0; k < kDoubles; ++k) {
+                ray[k] = &rays[block.id[std::min(i + k, block.size - 1)]];
+                t_min[k] = ray[k]->t_min;
+            }
+            load_turned(
+                df, [&](std::size_t lane) HWY_ATTR { return &ray[lane]->direction.x; }, along);
+            const auto exact = [&](std::size_t axis) HWY_ATTR { return hn::PromoteTo(dd, along[axis]); };
+            const DoubleAxes d{exact(0), exact(1), exact(2)};
+            const Doubles size = hn::Sqrt(dot(d, d));
+            const DoubleAxes n = hn::Div(all_doubles(1), size) * d;
+            hn::Store(hn::DemoteTo(df, n.x), df, direction[0]);
+            hn::Store(hn::DemoteTo(df, n.y), df, direction[1]);
+            hn::Store(hn::DemoteTo(df, n.z), df, direction[2]);
+            hn::Store(size, dd, length);
+            const auto nearest = hn::DemoteTo(df, hn::Mul(size, hn::PromoteTo(dd, hn::Load(df, t_min))));
+            hn::Store(hn::Mul(nearest, hn::Set(df, 1 - 4 * kUnitRoundoff)), df, begin);
+        }
+    };
+
     template <typename Take>
     HWY_INLINE SphereFilterRays rays(const Take& take) const {
         return {take(origin_[0]),    take(origin_[1]), take(origin_[2]), take(direction_[0]), take(direction_[1]),
@@ -86,6 +117,7 @@ private:
     alignas(64) float origin_[3][kSlots] = {}, direction_[3][kSlots] = {};
     alignas(64) float pad_[kSlots] = {}, begin_[kSlots] = {}, end_[kSlots] = {};
     double length_[kSlots] = {};  ///< Of a direction of large floats: beyond the range of float.
+    UnitDirections unit_;  ///< Worked out last.
     SphereCandidates candidates_;
 };
 

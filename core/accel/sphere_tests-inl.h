@@ -10,6 +10,7 @@
 
 #include "core/accel/kd_lanes-inl.h"
 #include "core/math/fours_lanes-inl.h"
+#include "core/math/precise_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -70,21 +71,6 @@ public:
 private:
     static constexpr std::size_t kCapacity = 256;
 
-    /// `excess` of spheres first to first + the lanes of a vector, worked out with care where it cancels.
-    HWY_INLINE Doubles careful(Doubles excess, hn::Mask<DoubleTag> cancels, std::size_t first,
-                               std::span<const Ray> rays, const SphereD* spheres) const {
-        const DoubleTag dd;
-        if (hn::AllFalse(dd, cancels)) return excess;
-        alignas(64) double values[hn::MaxLanes(DoubleTag())];
-        hn::Store(excess, dd, values);
-        for (LaneBits bits = bits_of(dd, cancels); bits != 0; bits &= bits - 1) {
-            const std::size_t k = first_lane(bits), at = std::min(first + k, size_ - 1);
-            const SphereD& sphere = spheres[name_[at]];
-            values[k] = squared_distance_excess(Vec3d(rays[ray_[at]].origin), sphere.center, sphere.radius);
-        }
-        return hn::Load(dd, values);
-    }
-
     std::uint32_t ray_[kCapacity] = {}, name_[kCapacity] = {};
     std::size_t size_ = 0;
 };
@@ -95,8 +81,6 @@ HWY_INLINE void SphereCandidates::decide(std::span<const Ray> rays, std::span<co
     const DoubleTag dd;
     const hn::Rebind<float, DoubleTag> df;
     static_assert(sizeof(SphereD) == 4 * sizeof(double));
-    const auto dot = [](Doubles ax, Doubles ay, Doubles az, Doubles bx, Doubles by, Doubles bz)
-                         HWY_ATTR { return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz)); };
     for (std::size_t i = 0; i < size_; i += kDoubles) {
         const Ray* ray[kDoubles];
         const SphereD* sphere[kDoubles];
@@ -121,21 +105,18 @@ HWY_INLINE void SphereCandidates::decide(std::span<const Ray> rays, std::span<co
         load_turned(
             dd, [&](std::size_t lane) HWY_ATTR { return &sphere[lane]->center.z; }, rest);
         const auto exact = [&](hn::Vec<decltype(df)> value) HWY_ATTR { return hn::PromoteTo(dd, value); };
-        const Doubles dx = exact(direction[0]), dy = exact(direction[1]), dz = exact(direction[2]), radius = rest[1];
-        const Doubles fx = hn::Sub(exact(origin[0]), center[0]), fy = hn::Sub(exact(origin[1]), center[1]),
-                      fz = hn::Sub(exact(origin[2]), rest[0]);
-        const Doubles a = dot(dx, dy, dz, dx, dy, dz), b = hn::Neg(dot(fx, fy, fz, dx, dy, dz));
-        const Doubles s = hn::Div(b, a);
-        const Doubles px = hn::Add(fx, hn::Mul(s, dx)), py = hn::Add(fy, hn::Mul(s, dy)),
-                      pz = hn::Add(fz, hn::Mul(s, dz));
-        const Doubles closest = hn::Sqrt(dot(px, py, pz, px, py, pz));
+        const DoubleAxes d{exact(direction[0]), exact(direction[1]), exact(direction[2])};
+        const DoubleAxes from{exact(origin[0]), exact(origin[1]), exact(origin[2])};
+        const DoubleAxes middle{center[0], center[1], rest[0]}, f = from - middle;
+        const Doubles radius = rest[1], a = dot(d, d), b = hn::Neg(dot(f, d));
+        const DoubleAxes nearest = f + hn::Div(b, a) * d;
+        const Doubles closest = hn::Sqrt(dot(nearest, nearest));
         const Doubles discriminant = hn::Mul(hn::Sub(radius, closest), hn::Add(radius, closest));
         const auto met = hn::And(hn::Ge(discriminant, hn::Zero(dd)), hn::FirstN(dd, size_ - i));
-        const Doubles distance = hn::Sqrt(dot(fx, fy, fz, fx, fy, fz));
-        const Doubles from_surface = hn::Sub(distance, radius);
-        const Doubles c =
-            careful(hn::Mul(from_surface, hn::Add(distance, radius)),
-                    hn::Le(hn::Abs(from_surface), hn::Mul(hn::Set(dd, kSphereCancels), radius)), i, rays, spheres);
+        const Doubles distance = hn::Sqrt(dot(f, f)), from_surface = hn::Sub(distance, radius);
+        const auto cancels = hn::Le(hn::Abs(from_surface), hn::Mul(hn::Set(dd, kSphereCancels), radius));
+        Doubles c = hn::Mul(from_surface, hn::Add(distance, radius));
+        if (!hn::AllFalse(dd, cancels)) c = hn::IfThenElse(cancels, squared_distance_excess(from, middle, radius), c);
         const Doubles q = hn::Add(b, hn::CopySign(hn::Sqrt(hn::Mul(a, discriminant)), b));
         const Doubles ta = hn::IfThenZeroElse(hn::Eq(q, hn::Zero(dd)), hn::Div(c, q)), tb = hn::Div(q, a);
         const auto swapped = hn::Gt(ta, tb);
