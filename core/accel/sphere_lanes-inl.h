@@ -117,7 +117,7 @@ private:
     alignas(64) float origin_[3][kSlots] = {}, direction_[3][kSlots] = {};
     alignas(64) float pad_[kSlots] = {}, begin_[kSlots] = {}, end_[kSlots] = {};
     double length_[kSlots] = {};  ///< Of a direction of large floats: beyond the range of float.
-    UnitDirections unit_;  ///< Worked out last.
+    UnitDirections unit_;         ///< Worked out last.
     SphereCandidates candidates_;
 };
 

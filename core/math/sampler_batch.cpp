@@ -38,14 +38,24 @@ HWY_ATTR void draw_singles(std::span<const Sampler> samplers, std::uint32_t dime
     });
 }
 
-HWY_ATTR void draw_pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
+template <typename Map>
+HWY_INLINE void draw_mapped(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers,
+                            const Map& map) {
     alignas(64) float x[kLanes], y[kLanes];
     each_group(samplers, [&](const SamplerLanes& lanes, std::size_t first, std::size_t n) HWY_ATTR {
-        const Vec2Lanes u = lanes.get_2d(dimension);
+        const Vec2Lanes u = map(lanes.get_2d(dimension));
         hn::Store(u.x, FloatTag(), x);
         hn::Store(u.y, FloatTag(), y);
         for (std::size_t i = 0; i < n; ++i) numbers[first + i] = {x[i], y[i]};
     });
+}
+
+HWY_ATTR void draw_pairs(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
+    draw_mapped(samplers, dimension, numbers, [](const Vec2Lanes& u) HWY_ATTR { return u; });
+}
+
+HWY_ATTR void draw_points(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> points) {
+    draw_mapped(samplers, dimension, points, [](const Vec2Lanes& u) HWY_ATTR { return sample_concentric_disk(u); });
 }
 
 }  // namespace rayuela::HWY_NAMESPACE
@@ -56,6 +66,7 @@ namespace rayuela {
 
 HWY_EXPORT(draw_singles);
 HWY_EXPORT(draw_pairs);
+HWY_EXPORT(draw_points);
 
 void draw_1d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<float> numbers) {
     HWY_DYNAMIC_DISPATCH(draw_singles)(samplers, dimension, numbers);
@@ -63,6 +74,10 @@ void draw_1d(std::span<const Sampler> samplers, std::uint32_t dimension, std::sp
 
 void draw_2d(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> numbers) {
     HWY_DYNAMIC_DISPATCH(draw_pairs)(samplers, dimension, numbers);
+}
+
+void draw_disk(std::span<const Sampler> samplers, std::uint32_t dimension, std::span<Vec2> points) {
+    HWY_DYNAMIC_DISPATCH(draw_points)(samplers, dimension, points);
 }
 
 }  // namespace rayuela

@@ -42,48 +42,19 @@ float tent(float u) {
 
 }  // namespace
 
-CameraRays::CameraRays(const Camera& camera, double aspect)
-    : origin_(camera.position), lens_radius_(camera.lens_radius), focus_distance_(camera.focus_distance) {
+CameraRays::CameraRays(const Camera& camera, double aspect) {
     const auto [forward, right, up] = view_axes(camera);
     const double half_height = std::tan(glm::radians(static_cast<double>(camera.vfov)) / 2);
     const double half_width = half_height * aspect;
     forward_ = Vec3(forward);
-    right_ = right;
-    up_ = up;
-    corner_ = forward - half_width * right + half_height * up;
-    across_ = 2 * half_width * right;
-    down_ = -2 * half_height * up;
-}
-
-/// To `position` of the image plane at distance 1, from the centre of the lens.
-Vec3d CameraRays::direction(const Vec2& position) const {
-    return corner_ + double{position.x} * across_ + double{position.y} * down_;
-}
-
-// Rays are written where they are to be: a whole that is copied has to wait for its parts to be stored.
-
-void CameraRays::write_ray_of_centre(const Vec2& position, Ray& ray) const {
-    ray.t_min = 0;
-    ray.t_max = kInfinity;
-    ray.origin = origin_;
-    ray.direction = Vec3(glm::normalize(direction(position)));
-}
-
-void CameraRays::write_ray_of_lens(const Vec2& position, const Vec2& lens, Ray& ray) const {
-    // Relative to the lens centre: the distance to the focus plane is not lost in the camera's coordinates.
-    const Vec3d offset = lens_radius_ * (double{lens.x} * right_ + double{lens.y} * up_);
-    ray.t_min = 0;
-    ray.t_max = kInfinity;
-    ray.origin = Vec3(Vec3d(origin_) + offset);
-    ray.direction = Vec3(glm::normalize(focus_distance_ * direction(position) - offset));
-}
-
-void CameraRays::rays(std::span<const Vec2> positions, std::span<const Vec2> lens, std::span<Ray> rays) const {
-    if (lens_radius_ == 0) {
-        for (std::size_t i = 0; i < positions.size(); ++i) write_ray_of_centre(positions[i], rays[i]);
-    } else {
-        for (std::size_t i = 0; i < positions.size(); ++i) write_ray_of_lens(positions[i], lens[i], rays[i]);
-    }
+    model_ = {.origin = camera.position,
+              .right = right,
+              .up = up,
+              .corner = forward - half_width * right + half_height * up,
+              .across = 2 * half_width * right,
+              .down = -2 * half_height * up,
+              .lens_radius = camera.lens_radius,
+              .focus_distance = camera.focus_distance};
 }
 
 Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
@@ -93,20 +64,21 @@ Ray CameraRays::ray(const Vec2& position, const Vec2& lens) const {
 }
 
 std::optional<CameraRays::View> CameraRays::view(const Vec3& p, const Vec2& lens) const {
-    const Vec3d offset = lens_radius_ * (double{lens.x} * right_ + double{lens.y} * up_);
-    const Vec3d to_p = Vec3d(p) - Vec3d(origin_) - offset;
+    const Vec3d offset = model_.lens_radius * (double{lens.x} * model_.right + double{lens.y} * model_.up);
+    const Vec3d to_p = Vec3d(p) - model_.origin - offset;
     const double depth = glm::dot(to_p, Vec3d(forward_));
     if (!(depth > 0)) return std::nullopt;
     // Where the ray meets the plane that is sharp, as seen from the lens centre at distance 1.
-    const Vec3d direction = to_p / depth + (lens_radius_ > 0 ? offset / focus_distance_ : Vec3d(0));
-    const Vec3d from_corner = direction - corner_;
-    return View{Vec3(Vec3d(origin_) + offset), Vec2(glm::dot(from_corner, across_) / glm::dot(across_, across_),
-                                                    glm::dot(from_corner, down_) / glm::dot(down_, down_))};
+    const Vec3d direction = to_p / depth + (model_.lens_radius > 0 ? offset / model_.focus_distance : Vec3d(0));
+    const Vec3d from_corner = direction - model_.corner;
+    return View{Vec3(model_.origin + offset),
+                Vec2(glm::dot(from_corner, model_.across) / glm::dot(model_.across, model_.across),
+                     glm::dot(from_corner, model_.down) / glm::dot(model_.down, model_.down))};
 }
 
 float CameraRays::density(const Vec3& direction) const {
     const double cosine = glm::dot(Vec3d(direction), Vec3d(forward_));
-    const double area = std::sqrt(glm::dot(across_, across_) * glm::dot(down_, down_));
+    const double area = std::sqrt(glm::dot(model_.across, model_.across) * glm::dot(model_.down, model_.down));
     return static_cast<float>(1 / (cosine * cosine * cosine * area));
 }
 

@@ -8,6 +8,13 @@
 
 namespace rayuela {
 
+/// A camera in the world. In double: through a long lens the pixels are not much farther apart than floats.
+struct CameraModel {
+    Vec3d origin{0}, right{0}, up{0};     ///< The middle of the lens; unit axes.
+    Vec3d corner{0}, across{0}, down{0};  ///< Image plane at distance 1, relative to the origin.
+    double lens_radius = 0, focus_distance = 1;
+};
+
 /// A Camera made ready: maps positions of the image and of the lens to rays.
 class CameraRays {
 public:
@@ -33,15 +40,8 @@ public:
     const Vec3& forward() const { return forward_; }
 
 private:
-    Vec3d direction(const Vec2& position) const;
-    void write_ray_of_centre(const Vec2& position, Ray& ray) const;
-    void write_ray_of_lens(const Vec2& position, const Vec2& lens, Ray& ray) const;
-
-    // In double: through a long lens the pixels are not much farther apart than floats.
-    Vec3 origin_, forward_;
-    Vec3d right_, up_;              ///< Unit.
-    Vec3d corner_, across_, down_;  ///< Image plane at distance 1, relative to the origin.
-    double lens_radius_, focus_distance_;
+    CameraModel model_;
+    Vec3 forward_;
 };
 
 /// Importance sampling of the pixel filter: the offset from the pixel's centre, in pixels, for `u` in [0, 1)^2. All samples

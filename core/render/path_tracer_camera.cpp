@@ -1,5 +1,4 @@
 #include "core/math/sampler_batch.h"
-#include "core/math/sampling.h"
 #include "core/render/path_dimensions.h"
 #include "core/render/path_tracer.h"
 
@@ -39,8 +38,7 @@ void PathTracer::draw_lens(PathBatch& batch) const {
     batch.lens.clear();
     if (!scene_.features().lens && options_.shortcuts.no_lens) return;
     batch.lens.resize(batch.samplers.size());
-    draw_2d(batch.samplers, kLens, batch.lens);
-    for (Vec2& u : batch.lens) u = sample_concentric_disk(u);
+    draw_disk(batch.samplers, kLens, batch.lens);
 }
 
 /// Camera rays that meet nothing end here.
