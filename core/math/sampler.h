@@ -111,6 +111,12 @@ constexpr float to_unit_float(std::uint32_t bits) {
     return static_cast<float>(bits >> 8) * 0x1p-24f;
 }
 
+/// What the samplers of a pixel have in common.
+constexpr std::uint64_t pixel_key(std::uint32_t seed, std::uint32_t pixel_index) {
+    constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+    return mix_bits(mix_bits((std::uint64_t{seed} << 32) | pixel_index) + kGolden);
+}
+
 /// Random numbers of one sample of one pixel. They depend on nothing but (kind, seed, pixel, sample, dimension), so that
 /// any sample can be replayed alone and in any order. A dimension names one draw, of one number or of a pair, and must
 /// not be used for two: different dimensions of a sample are independent of each other, seen alone. All values in
@@ -124,9 +130,9 @@ constexpr float to_unit_float(std::uint32_t bits) {
 class Sampler {
 public:
     Sampler() = default;
-    Sampler(SamplerKind kind, std::uint32_t seed, std::uint32_t pixel_index, std::uint32_t sample_index) : kind_(kind) {
-        constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
-        std::uint64_t key = mix_bits(mix_bits((std::uint64_t{seed} << 32) | pixel_index) + kGolden);
+    Sampler(SamplerKind kind, std::uint32_t seed, std::uint32_t pixel_index, std::uint32_t sample_index)
+        : Sampler(kind, pixel_key(seed, pixel_index), sample_index) {}
+    Sampler(SamplerKind kind, std::uint64_t key, std::uint32_t sample_index) : kind_(kind) {
         if (kind == SamplerKind::independent) key = mix_bits(key + sample_index);
         key_ = {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
         reversed_index_ = reverse_bits(sample_index);

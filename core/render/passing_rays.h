@@ -12,7 +12,10 @@ public:
 
     /// Whether there are any. Not where a plane has no bounds, nor where the bounds fill the image.
     bool possible() const { return possible_; }
-    /// Only of rays that `Accelerator::intersect` finds no hit of. The ray's t_min is 0 or more.
+    /// passes[i] becomes 1 for rays that pass, none of which `Accelerator::intersect` finds a hit of, and 0 for all others.
+    /// Their t_min is 0 or more.
+    void find(std::span<const Ray> rays, std::span<std::uint8_t> passes) const;
+    /// The same of one.
     bool passes(const Ray& ray) const;
 
 private:

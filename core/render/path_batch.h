@@ -59,6 +59,7 @@ struct PathBatch {
     std::vector<std::uint32_t> first_object;  ///< Hit::object of the camera ray.
 
     std::vector<Vec2> positions;            ///< Of the image.
+    std::vector<std::uint8_t> passes;       ///< Whether the camera ray passes all objects by.
     std::vector<Vec2> lens;                 ///< Points of the unit disc; empty where the lens has no extent.
     std::vector<Sampler> samplers;          ///< One a path, then those of the parts of split paths.
     std::vector<std::uint32_t> part_paths;  ///< Which path each of these parts belongs to.

@@ -13,20 +13,26 @@ void PathTracer::camera_rays(PathBatch& batch) const {
     const Vec2 pixel_size(1 / static_cast<float>(width_), 1 / static_cast<float>(height_));
     batch.samplers.resize(n);
     batch.part_paths.clear();
+    batch.states.clear();
     batch.states.resize(n);
     batch.rays.resize(n);
     batch.radiance.assign(n, Color(0));
     batch.first_object.assign(n, kNone);
     batch.positions.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
-        batch.samplers[i] = Sampler(settings.sampler, settings.seed, batch.ids[i].pixel, batch.ids[i].sample);
+    const auto begins_pixel = [&](std::size_t i) { return i == 0 || batch.ids[i].pixel != batch.ids[i - 1].pixel; };
+    std::uint64_t key = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (begins_pixel(i)) key = pixel_key(settings.seed, batch.ids[i].pixel);
+        batch.samplers[i] = Sampler(settings.sampler, key, batch.ids[i].sample);
+    }
     draw_2d(batch.samplers, kFilter, batch.positions);
+    const auto width = static_cast<std::uint32_t>(width_);
+    Vec2 centre(0);
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint32_t pixel = batch.ids[i].pixel;
-        const auto width = static_cast<std::uint32_t>(width_);
-        const Vec2 centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
+        if (begins_pixel(i)) centre = Vec2(glm::uvec2(pixel % width, pixel / width)) + 0.5f;
         batch.positions[i] = (centre + sample_filter(filter, batch.positions[i])) * pixel_size;
-        batch.states[i] = {.path = static_cast<std::uint32_t>(i), .part = static_cast<std::uint32_t>(i)};
+        batch.states[i].path = batch.states[i].part = static_cast<std::uint32_t>(i);
     }
     draw_lens(batch);
     camera_.rays(batch.positions, batch.lens, batch.rays);
@@ -44,10 +50,12 @@ void PathTracer::draw_lens(PathBatch& batch) const {
 /// Camera rays that meet nothing end here.
 void PathTracer::end_passing_rays(PathBatch& batch) const {
     const std::size_t n = batch.rays.size();
+    batch.passes.resize(n);
+    passing_rays_.find(batch.rays, batch.passes);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const Ray& ray = batch.rays[i];
-        if (passing_rays_.passes(ray)) {
+        if (batch.passes[i] != 0) {
             if (sees_sky_) leave(batch, batch.states[i], ray.direction);
             continue;
         }
