@@ -55,6 +55,19 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t se
 /// Dimensions of the Sobol sequence that are drawn from, as pairs (2p, 2p + 1).
 inline constexpr std::uint32_t kSobolPairs = 4;
 
+/// The first digits of the first pair are not scrambled at random but so that samples keep off each other: digit b becomes
+/// the sum of those of digits 0 to b that are set in row b. Of all such rows these have (nearly: found by annealing) the least
+/// mean square error in the area of a half plane, for 4 to 128 samples, relative to random scrambling: 0.76 to 0.98.
+inline constexpr std::uint32_t kFixedDigits = 7, kFixedMask = (1u << kFixedDigits) - 1;
+inline constexpr std::uint32_t kFixedRows[2][kFixedDigits] = {{0x01, 0x02, 0x06, 0x0c, 0x19, 0x33, 0x66},
+                                                              {0x01, 0x03, 0x05, 0x0c, 0x19, 0x33, 0x4c}};
+constexpr std::uint32_t fixed_scramble_reversed(std::uint32_t x, const std::uint32_t (&rows)[kFixedDigits]) {
+    std::uint32_t digits = 0;
+    for (std::uint32_t b = 0; b < kFixedDigits; ++b)
+        digits |= (static_cast<std::uint32_t>(std::popcount(x & rows[b])) & 1) << b;
+    return (x & ~kFixedMask) | digits;
+}
+
 /// Direction numbers of the Sobol sequence, bits in reverse order (bit 0 is 1/2): of the dimension, and of the bit of the
 /// index. Primitive polynomials and initial numbers of Joe & Kuo, "Constructing Sobol sequences with better two-dimensional
 /// projections", SIAM J. Sci. Comput. 30, 2008 (new-joe-kuo-6.21201).
@@ -85,6 +98,9 @@ constexpr SobolMatrix make_sobol_matrix() {
             matrix[dimension][static_cast<std::size_t>(i)] = reverse_bits(v[i]);
         }
     }
+    for (std::size_t dimension = 0; dimension < 2; ++dimension) {
+        for (std::uint32_t& column : matrix[dimension]) column = fixed_scramble_reversed(column, kFixedRows[dimension]);
+    }
     return matrix;
 }
 inline constexpr SobolMatrix kSobolMatrix = make_sobol_matrix();
@@ -96,6 +112,12 @@ constexpr std::uint32_t sobol_reversed(std::uint32_t index, std::uint32_t dimens
         x ^= kSobolMatrix[dimension][static_cast<std::size_t>(std::countr_zero(index))];
     }
     return x;
+}
+
+/// The rest of the scrambling: Owen's, but for the fixed digits, which are shifted.
+constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t dimension, std::uint32_t seed) {
+    const std::uint32_t fixed = dimension < 2 ? kFixedMask : 0;
+    return (owen_scramble_reversed(x, seed) & ~fixed) | ((x ^ seed) & fixed);
 }
 
 /// What sets the hash of a dimension, or of a set of dimensions, apart from those of all others.
@@ -161,7 +183,7 @@ private:
         return mix_bits_32(mix_bits_32(key_[half] ^ dimension_salt(dimension)) + key_[1 - half]);
     }
     static float scrambled(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed) {
-        return to_unit_float(reverse_bits(owen_scramble_reversed(sobol_reversed(index, dimension), seed)));
+        return to_unit_float(reverse_bits(scramble_reversed(sobol_reversed(index, dimension), dimension, seed)));
     }
     /// The shuffled index of the set that `dimension` belongs to. What the shuffle makes of index 0 is taken off again: that
     /// is a digital shift, which the scrambling of the result hides, and keeps indices as short as those of the samples.

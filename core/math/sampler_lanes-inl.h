@@ -66,7 +66,7 @@ public:
         if (kind_ == SamplerKind::independent) return to_unit_float(hash);
         Words first = hn::Zero(WordTag()), second = first;
         sobol_reversed(dimension, first, second);
-        return scrambled(first, hash);
+        return scrambled(first, dimension, hash);
     }
 
     HWY_INLINE Vec2Lanes get_2d(std::uint32_t dimension) const {
@@ -74,7 +74,7 @@ public:
         if (kind_ == SamplerKind::independent) return {to_unit_float(first_hash), to_unit_float(second_hash)};
         Words first = hn::Zero(WordTag()), second = first;
         sobol_reversed(dimension, first, second);
-        return {scrambled(first, first_hash), scrambled(second, second_hash)};
+        return {scrambled(first, dimension, first_hash), scrambled(second, dimension, second_hash)};
     }
 
 private:
@@ -83,8 +83,13 @@ private:
         return mix_bits_32(hn::Add(mix_bits_32(hn::Xor(key_[half], salt)), key_[1 - half]));
     }
 
-    static HWY_INLINE Floats scrambled(Words x, Words seed) {
-        return to_unit_float(reverse_bits(owen_scramble_reversed(x, seed)));
+    static HWY_INLINE Floats scrambled(Words x, std::uint32_t dimension, Words seed) {
+        Words digits = owen_scramble_reversed(x, seed);
+        if (dimension % kSobolPairs == 0) {
+            const Words fixed = all_words(kFixedMask);
+            digits = hn::Or(hn::AndNot(fixed, digits), hn::And(hn::Xor(x, seed), fixed));
+        }
+        return to_unit_float(reverse_bits(digits));
     }
 
     /// Both dimensions of a pair at the shuffled index, whose bits stand in reverse order here.
