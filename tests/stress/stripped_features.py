@@ -4,7 +4,7 @@ none of it. A replacement is (file, old, new); each old stands once in its file.
 TRACER, LOBES, TRACER_H = "core/render/path_tracer.cpp", "core/render/path_tracer_lobes.cpp", "core/render/path_tracer.h"
 STARTS = "core/render/path_tracer_camera.cpp"
 INTERACTION, AIMED, BLOCK = "core/render/interaction.h", "core/render/aimed_bsdf.h", "core/render/lobe_block.cpp"
-CAMERA, FILM = "core/render/camera_rays.cpp", "core/render/accumulation.cpp"
+CAMERA, FILM = "core/render/camera_ray_lanes.cpp", "core/render/accumulation.cpp"
 KERNELS, FEW, CLIENT = "core/accel/kd_kernels.cpp", "core/accel/few_objects-inl.h", "core/accel/object_lanes-inl.h"
 RAY_BLOCK = "core/accel/ray_block-inl.h"
 SURFACES, SURFACE_OF = "core/accel/surface_point.cpp", "core/accel/surface_of.h"
@@ -53,7 +53,7 @@ SHADING_NORMALS = [
 ]
 LENSES = [
     (STARTS, "    draw_lens(batch);\n", ""),
-    (CAMERA, "    if (lens_radius_ == 0) {\n        for", "    if (true) {\n        for"),
+    (CAMERA, "const bool with_lens = model.lens_radius != 0;", "const bool with_lens = false;"),
 ]
 SKIES = [
     (TRACER, "      sees_sky_(scene.features().environment || !options.shortcuts.no_sky),\n", ""),
@@ -118,12 +118,14 @@ MESHES = [
 ]
 BOXES_AND_MESHES = [change for change in MESHES if change[0] in (KERNELS, SURFACES)] + [
     (FEW, "        if (leaf_.others > 0) each_group(kAxis, [&](const WorldRays& rays) HWY_ATTR { test_others(rays); });\n", ""),
-    (CLIENT, "            test_others(triangles_.ray(visit.slot), leaf);\n", ""),
+    (CLIENT, "            test_others(ray_of_slot_[visit.slot], leaf);\n", ""),
     (CLIENT, "        for (LaneBits rest = leaf.others > 0 ? lanes : 0; rest != 0; rest &= rest - 1)\n"
              "            test_others(first_ + first_lane(rest), leaf);\n", ""),
 ]
 FLAT_SHAPES = [
     (FEW, "const std::size_t pairs = scene_.leaves->apart_pairs.pairs.size();", "const std::size_t pairs = 0;"),
+    (CLIENT, "          any_triangles_(leaves_.triangle_runs.size() > kRunPadding),\n", ""),
+    (CLIENT, "    const bool any_triangles_, any_spheres_;", "    static constexpr bool any_triangles_ = false;\n    const bool any_spheres_;"),
     (CLIENT, "            add_triangles(visit.slot, leaf);\n", ""),
     (CLIENT, "        decide_triangles();\n        decide_spheres();\n", "        decide_spheres();\n"),
     (CLIENT, "        packet_.test(\n            runs, leaf.triangles, mask_of(lanes),", "        packet_.test(\n            runs, 0, mask_of(lanes),"),
