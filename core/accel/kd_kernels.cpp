@@ -14,6 +14,7 @@
 #include "core/accel/few_objects-inl.h"
 #include "core/accel/mesh_apart-inl.h"
 #include "core/accel/mesh_sweep-inl.h"
+#include "core/accel/triangle_beams-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
@@ -39,6 +40,7 @@ void trace_mesh(const KdScene& scene, std::uint32_t object, std::span<const std:
     std::uint32_t sorted[kBlockRays];
     if (mesh.tree.apart != 0) ids = sort_by_axis(rays, ids, sorted);
     RayBlockWriter(rays, hits, &scene.objects[object], mesh.tree.bounds, mesh.bounds).write(ids, block);
+    if (kQuery == Query::closest && Beam::kSuits) trace_beams(mesh, object, block, rays, hits);
     sweep_apart<kQuery>(mesh, object, block, rays, hits);
     MeshClient<kQuery> client(mesh, object, block, rays, hits);
     if (kQuery == Query::closest) trace_packets(mesh.tree, block, client);

@@ -30,8 +30,15 @@ struct VertexTable {
     }
 };
 
-/// Triangles i to i + kLanes of a block of vertices, along one ray or many. What lies past the last is arbitrary.
-HWY_INLINE FloatMask may_hit(const FilterRays& ray, const Turn& turn, const LeafBlock& block, std::size_t i) {
+/// Triangles as rays see them that go along z from the origin.
+struct ShearedTriangles {
+    ShearedVertices a, b, c;
+    Floats extent;
+};
+
+/// Triangles i to i + kLanes of a block of vertices. What lies past the last is arbitrary.
+HWY_INLINE ShearedTriangles shear_corners(const FilterRays& ray, const Turn& turn, const LeafBlock& block,
+                                          std::size_t i) {
     const FloatTag d;
     const WordTag dw;
     const std::size_t n = block.vertices();
@@ -56,14 +63,30 @@ HWY_INLINE FloatMask may_hit(const FilterRays& ray, const Turn& turn, const Leaf
             zs.part[k] = sheared.z;
         }
         const auto vertex = [&](Words k) HWY_ATTR { return ShearedVertices{xs.at(k), ys.at(k), zs.at(k)}; };
-        return may_hit(ray, vertex(a), vertex(b), vertex(c), extent);
+        return {vertex(a), vertex(b), vertex(c), extent};
     } else {
         const auto vertex = [&](Words k) HWY_ATTR {
             const auto at = hn::BitCast(hn::RebindToSigned<WordTag>(), k);
             return shear(ray, hn::GatherIndex(d, x, at), hn::GatherIndex(d, y, at), hn::GatherIndex(d, z, at));
         };
-        return may_hit(ray, vertex(a), vertex(b), vertex(c), extent);
+        return {vertex(a), vertex(b), vertex(c), extent};
     }
+}
+
+/// The same for a block of runs.
+HWY_INLINE ShearedTriangles shear_runs(const FilterRays& ray, const Turn& turn, const LeafBlock& block, std::size_t i) {
+    const std::size_t n = block.triangles();
+    const auto load = [&](std::size_t run) HWY_ATTR { return hn::LoadU(FloatTag(), block.values() + i + run * n); };
+    const auto vertex = [&](std::size_t k) HWY_ATTR {
+        return shear(ray, load(3 * k + turn.x), load(3 * k + turn.y), load(3 * k + turn.z));
+    };
+    return {vertex(0), vertex(1), vertex(2), load(9)};
+}
+
+/// Triangles i to i + kLanes of a block of vertices, along one ray or many. What lies past the last is arbitrary.
+HWY_INLINE FloatMask may_hit(const FilterRays& ray, const Turn& turn, const LeafBlock& block, std::size_t i) {
+    const ShearedTriangles triangles = shear_corners(ray, turn, block, i);
+    return may_hit(ray, triangles.a, triangles.b, triangles.c, triangles.extent);
 }
 
 }  // namespace rayuela::HWY_NAMESPACE

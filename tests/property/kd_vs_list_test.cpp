@@ -145,6 +145,57 @@ TEST(KdVersusList, LargeTrianglesOfAMesh) {
     use_instruction_set(instruction_sets().front());
 }
 
+/// Through the pixels of squares of 4 x 4, 16 such squares, as a camera at the eye has them that looks along `forward`.
+std::vector<Ray> camera_rays(const Vec3& eye, const Vec3& forward, float spacing) {
+    const Vec3 size = glm::abs(forward);
+    const Vec3 side = size.x > size.y ? Vec3(0, 1, 0) : Vec3(1, 0, 0), up = glm::cross(forward, side);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 256; ++i) {
+        const int square = i / 16, pixel = i % 16;
+        const auto x = static_cast<float>(4 * (square % 4) + pixel % 4 - 8),
+                   y = static_cast<float>(4 * (square / 4) + pixel / 4 - 8);
+        rays.push_back({.origin = eye, .direction = forward + spacing * (x * side + y * up)});
+    }
+    return rays;
+}
+
+/// Rays from one point go through a tree together: along axes and not, through vertices and edges, with ends of their own, past a
+/// plane, from the inside, and through meshes finer and coarser than they are.
+TEST(KdVersusList, RaysOfACamera) {
+    Random random(41);
+    const MeshPtr ball = make_ball(24, 1, Vec3(0.2f, 0, 0), 0.2f, 42), room = in_a_room(*ball, 1.5f),
+                  slivers = make_soup(400, random), grid = make_grid(16, 0);
+    const std::vector<std::vector<GeometryInstance>> scenes{
+        {{ball, {}}},
+        {{room, {}}, {Plane{Vec3(0, -0.5f, 0), Vec3(0, 1, 0)}, {}}},
+        {{slivers, {}}},
+        {{grid, {}}, {ball, random_transform(random)}, {ball, random_transform(random)}}};
+    const Vec3 corner = Vec3(1, 2, 3) / 8.0f;
+    for (const std::vector<GeometryInstance>& scene : scenes) {
+        std::vector<Ray> rays;
+        for (const float spacing : {0x1p-12f, 0x1p-8f, 0x1p-7f}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const float sign : {-1.0f, 1.0f}) {
+                    Vec3 forward(0);
+                    forward[axis] = sign;
+                    for (const Vec3& tilt : {Vec3(0), Vec3(0.3f, -0.2f, 0.1f), random.in_cube(0.5f)}) {
+                        for (const Vec3& eye : {corner, corner - 3.0f * forward, random.in_cube(1)}) {
+                            for (const Ray& ray : camera_rays(eye, forward + tilt, spacing)) rays.push_back(ray);
+                        }
+                    }
+                }
+            }
+        }
+        for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].t_max = random.uniform(0, 4);
+        for (std::size_t i = 3; i < rays.size(); i += 11) rays[i].t_min = random.uniform(0, 4);
+        for (const std::string_view set : instruction_sets()) {
+            use_instruction_set(set);
+            expect_same_as_list(scene, rays, {1, 16});
+        }
+        use_instruction_set(instruction_sets().front());
+    }
+}
+
 /// What a mesh's tree holds lies behind the ray, farther than any float.
 TEST(KdVersusList, ALargeTriangleAheadOfARayThatHasLeftTheTree) {
     const MeshPtr ball = make_ball(12, 1, Vec3(0), 0.2f, 3);
