@@ -163,8 +163,8 @@ std::vector<Ray> camera_rays(const Vec3& eye, const Vec3& forward, float spacing
 /// plane, from the inside, and through meshes finer and coarser than they are.
 TEST(KdVersusList, RaysOfACamera) {
     Random random(41);
-    const MeshPtr ball = make_ball(24, 1, Vec3(0.2f, 0, 0), 0.2f, 42), room = in_a_room(*ball, 1.5f),
-                  slivers = make_soup(400, random), grid = make_grid(16, 0);
+    const MeshPtr ball = make_ball(12, 1, Vec3(0.2f, 0, 0), 0.2f, 42), room = in_a_room(*ball, 1.5f),
+                  slivers = make_soup(200, random), grid = make_grid(16, 0);
     const std::vector<std::vector<GeometryInstance>> scenes{
         {{ball, {}}},
         {{room, {}}, {Plane{Vec3(0, -0.5f, 0), Vec3(0, 1, 0)}, {}}},
@@ -178,8 +178,8 @@ TEST(KdVersusList, RaysOfACamera) {
                 for (const float sign : {-1.0f, 1.0f}) {
                     Vec3 forward(0);
                     forward[axis] = sign;
-                    for (const Vec3& tilt : {Vec3(0), Vec3(0.3f, -0.2f, 0.1f), random.in_cube(0.5f)}) {
-                        for (const Vec3& eye : {corner, corner - 3.0f * forward, random.in_cube(1)}) {
+                    for (const Vec3& tilt : {Vec3(0), random.in_cube(0.5f)}) {
+                        for (const Vec3& eye : {corner, corner - 3.0f * forward}) {
                             for (const Ray& ray : camera_rays(eye, forward + tilt, spacing)) rays.push_back(ray);
                         }
                     }
