@@ -20,6 +20,7 @@ RELATIVE = {
     "core/accel/surface_rounding.h": ["kSurfaceDoubleError", "kSurfaceSmallestError"],
     "core/accel/traced_object.cpp": ["kTolerance"],
     "core/accel/few_objects-inl.h": ["longest", "direction[axis]"],
+    "core/accel/kd_beams-inl.h": ["kLeastPad"],
     "core/accel/ray_block-inl.h": ["longest", "length >", "direction[axis]", "kBoundsTolerance", "kLeastDepthPad"],
     "core/accel/triangle_tests-inl.h": ["difference"],
     "core/lights/area_light.cpp": ["kRightAngle"],

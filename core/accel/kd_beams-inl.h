@@ -111,11 +111,11 @@ private:
         return same;
     }
 
-    /// Whether slopes are alike, and numbers so common that none is rounded to 0 or to infinity.
+    /// Whether slopes are alike, and numbers so common that none is rounded to 0 or to infinity; others go as packets.
     bool narrow() const {
-        constexpr float kTurn = 1.0f / 8;
+        constexpr float kTurn = 1.0f / 8, kLeastPad = 0x1p-56f, kLargestPad = 0x1p40f;
         const bool alike = shear[0].size() <= kTurn && shear[1].size() <= kTurn;
-        return alike && pad > 0x1p-56f && pad < 0x1p40f && depth.lo >= 0;
+        return alike && pad > kLeastPad && pad < kLargestPad && depth.lo >= 0;
     }
 };
 

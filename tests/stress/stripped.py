@@ -32,12 +32,17 @@ from stripped_features import FEATURES
 
 LANES, PACKETS, TRIANGLES = "core/accel/kd_lanes-inl.h", "core/accel/kd_packets-inl.h", "core/accel/triangle_tests-inl.h"
 FEW, PAIRS = "core/accel/few_objects-inl.h", "core/accel/pair_tests-inl.h"
+BEAMS, BEAM_TRIANGLES = "core/accel/kd_beams-inl.h", "core/accel/triangle_beams-inl.h"
 CONVOYS, SPHERES = "core/accel/kd_convoy-inl.h", "core/accel/sphere_tests-inl.h"
 PADS = [
     (LANES, "const Floats pad = hn::Mul(hn::Load(d, pad_), hn::Abs(inverse));", ""),
     (LANES, "enter = hn::MulSub(distance, inverse, pad), leave = hn::MulAdd(distance, inverse, pad);",
      "enter = hn::Mul(distance, inverse), leave = enter;"),
     (PACKETS, "enter = middle - overlap, leave = middle + overlap;", "enter = middle, leave = middle;\n(void)overlap;"),
+    (BEAMS, "pad_(2 * beam.pad)", "pad_(0 * beam.pad)"),
+    (BEAM_TRIANGLES, "const float pad = 2 * beam_.pad;", "const float pad = 0;"),
+    (BEAM_TRIANGLES, "hn::MulAdd(rounding, size, hn::MulAdd(slack.slope, extent, slack.offset))",
+     "hn::Zero(d) * rounding * size * slack.slope * slack.offset"),
     (CONVOYS, "enter = hn::MulSub(distance, inverse, overlap), leave = hn::MulAdd(distance, inverse, overlap);",
      "enter = hn::Mul(distance, inverse), leave = enter;\n(void)overlap;"),
     (TRIANGLES, "const Floats slack = hn::MulAdd(ray.slack.slope, extent, ray.slack.offset);",
