@@ -18,7 +18,7 @@ namespace rayuela::HWY_NAMESPACE {
 class Beam {
 public:
     /// Parts are as many rays as there are lanes.
-    static constexpr std::size_t kParts = 4, kRays = kParts * kLanes;
+    static constexpr std::size_t kParts = kLanes < 16 ? 8 : 4, kRays = kParts * kLanes;
     /// A BeamWay needs so many lanes for a cell.
     static constexpr bool kSuits = kLanes >= 8;
 

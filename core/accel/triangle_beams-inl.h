@@ -82,7 +82,9 @@ public:
 
     /// Tests the triangles of the leaf with all rays.
     HWY_INLINE void test_all(const KdNode& leaf) {
-        test({leaf, {beam_.rays[0], beam_.rays[1], beam_.rays[2], beam_.rays[3]}});
+        Visit visit{leaf, {}};
+        std::copy_n(beam_.rays, kParts, visit.rays);
+        test(visit);
     }
 
     /// Sends for the triangles of the leaf, if a ray goes through its cell, and tests those sent for before. The depth beyond which
