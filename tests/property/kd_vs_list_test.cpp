@@ -196,6 +196,26 @@ TEST(KdVersusList, RaysOfACamera) {
     }
 }
 
+/// There the rounding of the float test decides: without the bound on it hits are lost.
+TEST(KdVersusList, RaysFromOnePointAtVerticesAndEdges) {
+    Random random(51);
+    for (int view = 0; view < 24; ++view) {
+        const MeshPtr ball = make_ball(12, 1, random.in_cube(1), 0.2f, 52);
+        const Vec3 eye = 20.0f * glm::normalize(random.in_cube(1));
+        std::vector<Ray> rays;
+        for (const glm::uvec3& t : ball->triangles) {
+            const Vec3 a = ball->positions[t.x], b = ball->positions[t.y];
+            rays.push_back({.origin = eye, .direction = a - eye});
+            rays.push_back({.origin = eye, .direction = 0.5f * (a + b) - eye});
+        }
+        for (const std::string_view set : instruction_sets()) {
+            use_instruction_set(set);
+            expect_same_as_list({{ball, {}}}, rays, {1, 16});
+        }
+        use_instruction_set(instruction_sets().front());
+    }
+}
+
 /// What a mesh's tree holds lies behind the ray, farther than any float.
 TEST(KdVersusList, ALargeTriangleAheadOfARayThatHasLeftTheTree) {
     const MeshPtr ball = make_ball(12, 1, Vec3(0), 0.2f, 3);
