@@ -6,6 +6,8 @@
 #define RAYUELA_CORE_ACCEL_BEAM_HITS_INL_H_
 #endif
 
+#include <utility>
+
 #include "core/accel/kd_beams-inl.h"
 #include "core/accel/leaf_blocks.h"
 

@@ -9,6 +9,7 @@
 #include <bit>
 
 #include "core/accel/kd_packets-inl.h"
+#include "core/accel/triangle_tests-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
