@@ -75,7 +75,6 @@ public:
         pairs_.name[to] = name;
         if (size_ == Pairs::kCapacity) decide_added();
     }
-    bool any_added() const { return size_ > 0; }
     HWY_INLINE void decide_added() {
         const DoubleTag dd;
         const HalfFloatTag df;

@@ -46,6 +46,14 @@ HWY_INLINE void each_block(const MeshTree& mesh, std::size_t first, std::size_t 
     }
 }
 
+HWY_INLINE void prefetch_leaf(const MeshTree& mesh, std::size_t first, std::size_t count) {
+    // As many vertices as triangles: what leaves mostly have. Four lines without a count to guess wrong.
+    constexpr std::size_t kLine = 16, kOften = 4 * kLine;
+    const float* const block = mesh.blocks(first);
+    for (std::size_t i = 0; i < kOften; i += kLine) hwy::Prefetch(block + i);
+    for (std::size_t i = kOften; i < LeafBlock::kHeader + 5 * count; i += kLine) hwy::Prefetch(block + i);
+}
+
 /// Rays of a block on their way through the mesh of one object.
 template <Query kQuery>
 class MeshClient {
@@ -67,13 +75,7 @@ public:
 
     HWY_INLINE void move(std::size_t from, std::size_t to) { triangles_.move(from, to); }
 
-    HWY_INLINE void prefetch(const LeafVisit& leaf) const {
-        // As many vertices as triangles: what leaves mostly have. Four lines without a count to guess wrong.
-        constexpr std::size_t kLine = 16, kOften = 4 * kLine;
-        const float* const block = mesh_.blocks(leaf.first);
-        for (std::size_t i = 0; i < kOften; i += kLine) hwy::Prefetch(block + i);
-        for (std::size_t i = kOften; i < LeafBlock::kHeader + 5 * leaf.count; i += kLine) hwy::Prefetch(block + i);
-    }
+    HWY_INLINE void prefetch(const LeafVisit& leaf) const { prefetch_leaf(mesh_, leaf.first, leaf.count); }
 
     template <typename Slots>
     HWY_INLINE void visit(std::span<const LeafVisit> visits, Slots& slots) {

@@ -97,7 +97,7 @@ public:
             any |= visit.rays[p] = through(p, cell);
         }
         if (any == 0) return limit_;
-        prefetch(leaf);
+        prefetch_leaf(mesh_, leaf.first(), leaf.count());
         if (waits_) test(waiting_);
         waiting_ = visit;
         waits_ = true;
@@ -187,17 +187,11 @@ private:
         return bits_of(d, hn::Le(enter, leave));
     }
 
-    HWY_INLINE void prefetch(const KdNode& leaf) const {
-        constexpr std::size_t kLine = 16;
-        const float* const block = mesh_.blocks(leaf.first());
-        for (std::size_t i = 0; i < LeafBlock::kHeader + 5 * leaf.count(); i += kLine) hwy::Prefetch(block + i);
-    }
-
     HWY_INLINE void test(const Visit& visit) {
         each_block(mesh_, visit.leaf.first(), visit.leaf.count(), [&](const LeafBlock& block) HWY_ATTR {
             for (std::size_t i = 0; i < block.triangles(); i += kLanes) test(block, i, visit);
         });
-        if (hits_.any_added()) hits_.decide_added();
+        hits_.decide_added();
         bool any = false;
         for (std::size_t p = 0; p < kParts; ++p) {
             if (hits_.take_closer(p) == 0) continue;
@@ -280,8 +274,8 @@ private:
         const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
         const Floats x = set(part.x.middle()), y = set(part.y.middle());
         // Rounded up.
-        const Floats half_x = set(0.5f * (part.x.hi - part.x.lo) + 2 * kUnitRoundoff * (part.x.hi - part.x.lo)),
-                     half_y = set(0.5f * (part.y.hi - part.y.lo) + 2 * kUnitRoundoff * (part.y.hi - part.y.lo));
+        constexpr float kHalf = 0.5f + 2 * kUnitRoundoff;
+        const Floats half_x = set(kHalf * part.x.size()), half_y = set(kHalf * part.y.size());
         FloatMask below = hn::FirstN(d, 0), above = below;
         for (const EdgePlane& edge : {triangles.u, triangles.v, triangles.w}) {
             const Floats value = edge.at(x, y), margin = edge.change(half_x, half_y) + triangles.slack;
