@@ -17,7 +17,7 @@ public:
         : scene_(scene), surfaces_(scene.instances()), view_(view) {}
 
     std::vector<Ray> primary(int side) {
-        constexpr int kBlock = 16, kSquare = 4;
+        constexpr int kBlock = 16, kBeam = 8, kSquare = 4;
         const Vec3 forward = glm::normalize(view_.target - view_.eye);
         const Vec3 right = glm::normalize(glm::cross(forward, view_.up)), up = glm::cross(right, forward);
         const float half = std::tan(glm::radians(view_.field_of_view) / 2);
@@ -33,8 +33,11 @@ public:
             }
         };
         each_square(side / kBlock * kBlock, kBlock, [&](int left, int top) {
-            each_square(kBlock, kSquare, [&](int x, int y) {
-                each_square(kSquare, 1, [&](int column, int row) { add(left + x + column, top + y + row); });
+            each_square(kBlock, kBeam, [&](int x, int y) {
+                each_square(kBeam, kSquare, [&](int u, int v) {
+                    each_square(kSquare, 1,
+                                [&](int column, int row) { add(left + x + u + column, top + y + v + row); });
+                });
             });
         });
         return rays;

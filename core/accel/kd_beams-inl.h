@@ -149,7 +149,8 @@ public:
     }
 
     /// Takes the beam through the tree, nearest leaves first:
-    /// `std::uint32_t through(cell, parts)`: those of the parts, a bit each, of which a ray goes through the cell;
+    /// `std::uint32_t through(cell, begin, end, parts)`: those of the parts, a bit each, of which a ray may go through the cell
+    /// between these depths;
     /// `float visit(leaf, cell, parts)` tests the leaf's primitives and returns the depth beyond which nothing counts.
     template <typename Client>
     HWY_INLINE void trace(const KdTree& tree, Client& client) {
@@ -171,7 +172,7 @@ public:
                 // The near child's rays are mostly those of its parent.
                 if (is_far) {
                     hn::Store(cell, d, corners.end);
-                    parts = client.through(corners, parts);
+                    parts = client.through(corners, begin, end, parts);
                 }
                 const Branch branch = split(node, begin, end);
                 const std::uint32_t far = node.children() + 1 - branch.near;

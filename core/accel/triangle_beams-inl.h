@@ -103,13 +103,23 @@ public:
         waits_ = true;
         return limit_;
     }
-    HWY_INLINE std::uint32_t through(const KdCell& cell, std::uint32_t parts) const {
-        std::uint32_t left = 0;
-        for (; parts != 0; parts &= parts - 1) {
-            const std::size_t p = first_lane(parts);
-            left |= (through(p, cell) != 0 ? 1u : 0u) << p;
+    /// Those of the parts of which a ray may go through a cell between two depths: by the slopes of each part, in small cells by
+    /// its rays, between which such cells may lie.
+    HWY_INLINE std::uint32_t through(const KdCell& cell, float begin, float end, std::uint32_t parts) const {
+        const std::uint32_t axes[2] = {beam_.turn.x, beam_.turn.y};
+        const PartTag d;
+        const auto first = hn::Set(d, begin), last = hn::Min(hn::Set(d, end), hn::Load(d, last_));
+        auto passed_by = hn::Gt(first, last);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const float lo = cell.lo(axes[k]), hi = cell.hi(axes[k]);
+            if (hi - lo < kSmall * begin * largest_part_[k]) return some_through(cell, parts);
+            const float origin = beam_.origin[axes[k]], pad = 2 * beam_.pad;
+            const auto slope_lo = hn::Load(d, slope_lo_[k]), slope_hi = hn::Load(d, slope_hi_[k]);
+            const auto below = hn::Lt(hn::Max(slope_hi * first, slope_hi * last), hn::Set(d, lo - pad - origin));
+            const auto above = hn::Gt(hn::Min(slope_lo * first, slope_lo * last), hn::Set(d, hi + pad - origin));
+            passed_by = hn::Or(passed_by, hn::Or(below, above));
         }
-        return left;
+        return parts & ~static_cast<std::uint32_t>(bits_of(d, passed_by));
     }
     HWY_INLINE void finish() {
         if (waits_) test(waiting_);
@@ -119,12 +129,15 @@ public:
 private:
     static constexpr std::size_t kParts = Beam::kParts;
 
+    using PartTag = hn::CappedTag<float, 8>;
+    static constexpr std::size_t kPartRoom = 8;
+    static_assert(kParts <= kPartRoom);
+
     struct Part {
         alignas(64) float dx[kLanes], dy[kLanes];            ///< Shears beyond those of the middle.
         alignas(64) float steep_x[kLanes], steep_y[kLanes];  ///< Depth along a way of 1 across.
         alignas(64) float begin[kLanes], end[kLanes];        ///< Depths between which hits count.
         alignas(64) float depth[kLanes], depth_pad[kLanes];  ///< As RayBlock has them, positive.
-        float last;                                          ///< Of the ends.
         Beam::Range x, y;                                    ///< Of dx, dy.
     };
     struct Visit {
@@ -149,6 +162,9 @@ private:
         range.lo = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(open, difference, far)));
         range.hi = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(open, difference, hn::Neg(far))));
         largest = std::max(largest, std::max(std::fabs(range.lo), std::fabs(range.hi)));
+        slope_lo_[axis][p] = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(open, slope, far)));
+        slope_hi_[axis][p] = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(open, slope, hn::Neg(far))));
+        largest_part_[axis] = std::max(largest_part_[axis], slope_hi_[axis][p] - slope_lo_[axis][p]);
     }
 
     HWY_INLINE void set_range(std::size_t p) {
@@ -160,14 +176,22 @@ private:
         const Floats end = hn::IfThenElse(open, range.end, hn::Set(d, -kInfinity));
         hn::Store(hn::IfThenElse(open, range.begin, hn::Set(d, kInfinity)), d, part.begin);
         hn::Store(end, d, part.end);
-        part.last = hn::GetLane(hn::MaxOfLanes(d, end));
+        last_[p] = hn::GetLane(hn::MaxOfLanes(d, end));
     }
     HWY_INLINE void set_limit() {
         limit_ = -1;
-        for (std::size_t p = 0; p < kParts; ++p)
-            limit_ = beam_.rays[p] != 0 ? std::max(limit_, parts_[p].last) : limit_;
+        for (std::size_t p = 0; p < kParts; ++p) limit_ = beam_.rays[p] != 0 ? std::max(limit_, last_[p]) : limit_;
     }
 
+    /// The parts of which a ray goes through a cell before its hit.
+    HWY_INLINE std::uint32_t some_through(const KdCell& cell, std::uint32_t parts) const {
+        std::uint32_t left = 0;
+        for (; parts != 0; parts &= parts - 1) {
+            const std::size_t p = first_lane(parts);
+            left |= (through(p, cell) != 0 ? 1u : 0u) << p;
+        }
+        return left;
+    }
     /// The rays of a part that go through a cell before their hits.
     HWY_INLINE LaneBits through(std::size_t p, const KdCell& cell) const {
         const FloatTag d;
@@ -254,7 +278,7 @@ private:
                 }
                 continue;
             }
-            LaneBits left = bits_of(d, hn::And(may_hit(triangles, part), there));
+            LaneBits left = bits_of(d, hn::And(may_hit(triangles, p), there));
             if (left == 0) continue;
             if (!is_stored) stored.set(triangles);
             is_stored = true;
@@ -269,8 +293,9 @@ private:
     }
 
     /// Whether any ray of a part may hit the triangles.
-    static HWY_INLINE FloatMask may_hit(const BeamTriangles& triangles, const Part& part) {
+    HWY_INLINE FloatMask may_hit(const BeamTriangles& triangles, std::size_t p) const {
         const FloatTag d;
+        const Part& part = parts_[p];
         const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
         const Floats x = set(part.x.middle()), y = set(part.y.middle());
         // Rounded up.
@@ -282,17 +307,23 @@ private:
             below = hn::Or(below, hn::Lt(value, hn::Neg(margin)));
             above = hn::Or(above, hn::Gt(value, margin));
         }
-        return hn::Not(hn::Or(hn::And(below, above), hn::Gt(triangles.nearest, set(part.last))));
+        return hn::Not(hn::Or(hn::And(below, above), hn::Gt(triangles.nearest, set(last_[p]))));
     }
 
     /// So few rays of a part are tested one by one.
     static constexpr std::uint32_t kFew = 5;
+    /// So many times the width of a part or narrower, a cell may lie between rays.
+    static constexpr float kSmall = 4;
 
     const MeshTree& mesh_;
     const Beam& beam_;
     BeamHits& hits_;
     Part parts_[kParts];
-    float spread_ = 0;  ///< How far shears are from those of the middle.
+    alignas(32) float slope_lo_[2][kPartRoom] = {}, slope_hi_[2][kPartRoom] =
+                                                        {};  ///< Of the rays of each part, as depths grow.
+    alignas(32) float last_[kPartRoom] = {};                 ///< Of the ends of each part's rays.
+    float largest_part_[2] = {0, 0};                         ///< The widest range of slopes of a part.
+    float spread_ = 0;                                       ///< How far shears are from those of the middle.
     float limit_ = -1;
     Visit waiting_;
     bool waits_ = false;

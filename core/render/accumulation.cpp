@@ -21,14 +21,15 @@ constexpr std::size_t kBatchPaths = 4096;
 constexpr std::uint32_t kLightPaths = 4096;
 
 /// Calls use(x, y) for the pixels of a tile, square by square, and so within the squares: rays that the kernels take together
-/// are close to each other, be they of 4 x 4 pixels or four each of 2 x 2.
+/// are close to each other, be they of 8 x 8 pixels, of 4 x 4 or four each of 2 x 2.
 template <typename Tile, typename Use>
 void for_each_pixel(const Tile& tile, const Use& use) {
-    constexpr int kSquare = 4;
+    constexpr int kSquare = 8;
     for (int top = tile.y0; top < tile.y1; top += kSquare) {
         for (int left = tile.x0; left < tile.x1; left += kSquare) {
             for (int i = 0; i < kSquare * kSquare; ++i) {
-                const int x = left + (i & 1) + (i >> 1 & 2), y = top + (i >> 1 & 1) + (i >> 2 & 2);
+                const int x = left + (i & 1) + (i >> 1 & 2) + (i >> 2 & 4);
+                const int y = top + (i >> 1 & 1) + (i >> 2 & 2) + (i >> 3 & 4);
                 if (x < tile.x1 && y < tile.y1) use(x, y);
             }
         }
