@@ -31,8 +31,9 @@ inline bool owner_below(const KdCut& cut, std::uint32_t primitive, const Bounds3
 }
 
 /// The cheapest plane by the surface area heuristic with a bonus for cutting off empty space (Wald & Havran, "On building
-/// fast kd-trees for ray tracing", 2006). 32 bins an axis over what the node holds; every end of a box where the node holds
-/// at most 32. Nothing where no plane lies inside the cell.
+/// fast kd-trees for ray tracing", 2006). Of every plane at which a box begins or ends where the node holds at most 64; else of
+/// 32 bins an axis over what it holds, then, up to 16,383, of such planes in the two bins beside the best. A flat box is below
+/// the plane in which it lies and begins just before it. Nothing where no plane lies inside the cell.
 std::optional<KdCut> find_sah_cut(std::span<const KdReference> references, const Bounds3& cell, float step_cost);
 
 }  // namespace rayuela

@@ -3,7 +3,6 @@
 #include "core/math/float_error.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -14,102 +13,20 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/accel/lane_types-inl.h"
+#include "core/accel/cut_bins-inl.h"
+#include "core/accel/cut_search-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayuela::HWY_NAMESPACE {
 
-constexpr int kBins = 32;
-constexpr std::size_t kExactLimit = 32;
+constexpr std::size_t kExactLimit = 64;
 /// Of larger nodes every so many-th reference is counted that at least so many are: planes are as good.
 constexpr std::size_t kCounted = 1 << 13;
-constexpr double kEmptyBonus = 0.8;
 
-/// The cheapest of the planes offered to it; of several the one with the least number.
-class CutSearch {
-public:
-    /// What the cell is across the axis of each lane.
-    struct Across {
-        Doubles lo, hi, extent;
-        Doubles per_depth, at_none;  ///< Half the surface area of a part of the cell by its depth.
-    };
-
-    /// `weight`: references that each of those stands for which are counted.
-    CutSearch(const Bounds3& cell, double weight, float step_cost)
-        : cell_(cell), extent_(Vec3d(cell.hi) - Vec3d(cell.lo)), step_cost_(step_cost) {
-        const Vec3d& e = extent_;
-        has_area_ = e.x * e.y + e.y * e.z + e.z * e.x > 0;
-        per_whole_ = weight / slope_of(0).of(e.x);
-    }
-
-    /// The same axis in all lanes.
-    HWY_INLINE Across across(int axis) const {
-        const DoubleTag dd;
-        const Slope slope = slope_of(axis);
-        return {hn::Set(dd, cell_.lo[axis]), hn::Set(dd, cell_.hi[axis]), hn::Set(dd, extent_[axis]),
-                hn::Set(dd, slope.per_depth), hn::Set(dd, slope.at_none)};
-    }
-    /// x, y, z, none and so on from the axis `first`; where there is none no cut is.
-    HWY_INLINE Across across_in_turn(std::size_t first) const {
-        alignas(64) double rows[5][8] = {};
-        for (int axis = 0; axis < 3; ++axis) {
-            const Slope slope = slope_of(axis);
-            const double of_axis[5] = {cell_.lo[axis], cell_.hi[axis], extent_[axis], slope.per_depth, slope.at_none};
-            for (std::size_t i = 0; i < 5; ++i) rows[i][axis] = rows[i][axis + 4] = of_axis[i];
-        }
-        const auto row = [&](std::size_t i) HWY_ATTR { return hn::Load(DoubleTag(), rows[i] + first); };
-        return {row(0), row(1), row(2), row(3), row(4)};
-    }
-
-    HWY_INLINE void consider(const Across& cell, const float* planes, const std::int32_t* counts_below,
-                             const std::int32_t* counts_above, Doubles number) {
-        const DoubleTag dd;
-        const hn::Rebind<float, DoubleTag> df;
-        const hn::Rebind<std::int32_t, DoubleTag> di;
-        const Doubles plane = hn::PromoteTo(dd, hn::Load(df, planes)), depth = plane - cell.lo, zero = hn::Zero(dd);
-        const Doubles below = hn::PromoteTo(dd, hn::Load(di, counts_below)),
-                      above = hn::PromoteTo(dd, hn::Load(di, counts_above));
-        const Doubles tests = (cell.per_depth * depth + cell.at_none) * below +
-                              (cell.per_depth * (cell.extent - depth) + cell.at_none) * above;
-        const auto cuts_off_space = hn::Or(hn::Eq(below, zero), hn::Eq(above, zero));
-        const Doubles bonus = hn::IfThenElse(cuts_off_space, hn::Set(dd, kEmptyBonus), hn::Set(dd, 1));
-        const Doubles cost = bonus * (hn::Set(dd, step_cost_) + tests * hn::Set(dd, per_whole_));
-        // What lies on a side of the cell is no cut.
-        const auto inside = hn::And(hn::Gt(plane, cell.lo), hn::Lt(plane, cell.hi));
-        const auto better = hn::And(inside, hn::Lt(cost, best_cost_));
-        best_cost_ = hn::IfThenElse(better, cost, best_cost_);
-        best_number_ = hn::IfThenElse(better, number, best_number_);
-    }
-
-    struct Best {
-        double cost;  ///< Infinite where there is none.
-        std::size_t number;
-    };
-    HWY_INLINE Best best() const {
-        const DoubleTag dd;
-        const Doubles cost = hn::MinOfLanes(dd, best_cost_);
-        const Doubles numbers = hn::IfThenElse(hn::Eq(best_cost_, cost), best_number_, hn::Set(dd, INFINITY));
-        return {hn::GetLane(cost), static_cast<std::size_t>(hn::GetLane(hn::MinOfLanes(dd, numbers)))};
-    }
-
-private:
-    /// Half the surface area of a part of the cell, or its length where the cell has no area, by its depth along an axis.
-    struct Slope {
-        double per_depth = 0, at_none = 0;
-        double of(double depth) const { return per_depth * depth + at_none; }
-    };
-    Slope slope_of(int axis) const {
-        const double u = extent_[(axis + 1) % 3], v = extent_[(axis + 2) % 3];
-        return has_area_ ? Slope{u + v, u * v} : Slope{1, u + v};
-    }
-
-    Bounds3 cell_;
-    Vec3d extent_;
-    bool has_area_;
-    double step_cost_, per_whole_;
-    /// In each lane, of the planes that came there.
-    Doubles best_cost_ = hn::Set(DoubleTag(), INFINITY), best_number_ = hn::Zero(DoubleTag());
-};
+/// Where a box begins for a cut: a flat one before the plane in which it lies, so that it is below it.
+HWY_INLINE float begin_of(const Bounds3& box, int axis) {
+    return box.lo[axis] < box.hi[axis] ? box.lo[axis] : next_down(box.lo[axis]);
+}
 
 using Counts = hn::Vec<hn::RebindToSigned<FloatTag>>;
 
@@ -134,23 +51,21 @@ HWY_INLINE Floats load_axes(const float* from, std::size_t i) {
 #endif
 }
 
-/// Every plane at which a box begins or ends. A flat box within the plane is below it.
+/// Every plane at which a box begins or ends.
 HWY_INLINE std::optional<KdCut> search_exact(std::span<const KdReference> references, const Bounds3& cell,
                                              float step_cost) {
     // Rows of 8: where a box begins along x, y and z, nothing, and where it ends.
     constexpr std::size_t kRow = 8, kEnd = 4, kRoom = kExactLimit * kRow + kLanes;
-    alignas(64) float planes[kRoom], begins[kExactLimit * kEnd];
+    alignas(64) float planes[kRoom];
     alignas(64) std::int32_t below[kRoom], above[kRoom];
     const std::size_t n = references.size();
     for (std::size_t k = 0; k < n; ++k) {
-        const float *const lo = &references[k].box.lo.x, *const hi = &references[k].box.hi.x;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            planes[kRow * k + axis] = lo[axis];
-            planes[kRow * k + kEnd + axis] = hi[axis];
-            // So that a flat box begins before the plane in which it lies.
-            begins[kEnd * k + axis] = lo[axis] < hi[axis] ? lo[axis] : next_down(lo[axis]);
+        for (int axis = 0; axis < 3; ++axis) {
+            float* const at = planes + kRow * k + axis;
+            at[0] = begin_of(references[k].box, axis);
+            at[kEnd] = references[k].box.hi[axis];
         }
-        planes[kRow * k + 3] = planes[kRow * k + 7] = begins[kEnd * k + 3] = 0;
+        planes[kRow * k + 3] = planes[kRow * k + 7] = 0;
     }
     const FloatTag d;
     const hn::RebindToSigned<FloatTag> di;
@@ -158,7 +73,7 @@ HWY_INLINE std::optional<KdCut> search_exact(std::span<const KdReference> refere
         const Floats plane = hn::Load(d, planes + i);
         auto is_below = hn::Zero(di), is_above = is_below;
         for (std::size_t k = 0; k < n; ++k) {
-            is_below = count_up(is_below, hn::Lt(load_axes(begins + kEnd * k, i), plane));
+            is_below = count_up(is_below, hn::Lt(load_axes(planes + kRow * k, i), plane));
             is_above = count_up(is_above, hn::Gt(load_axes(planes + kRow * k + kEnd, i), plane));
         }
         hn::Store(is_below, di, below + i);
@@ -187,98 +102,6 @@ HWY_INLINE std::optional<KdCut> search_exact(std::span<const KdReference> refere
                  .duplicates = static_cast<std::size_t>(below[at] + above[at]) - n};
 }
 
-/// Coordinates of a box: lo.x lo.y lo.z hi.x hi.y hi.z, and two words more of the reference in whole vectors.
-using BoxTag = hn::CappedTag<float, 8>;
-using Boxes = hn::Vec<BoxTag>;
-constexpr std::size_t kSides = 6, kBoxLanes = hn::MaxLanes(BoxTag());
-using BoxRow = float[8];
-static_assert(sizeof(KdReference) == sizeof(BoxRow));
-
-/// A vector of bytes, as many of which as are needed hold a count for each bin.
-using ByteTag = hn::CappedTag<std::uint8_t, kBins>;
-constexpr std::size_t kBytes = hn::MaxLanes(ByteTag());
-
-/// kSteps + kBins - b: for each bin whether it is b or lies beyond.
-alignas(64) constexpr auto kSteps = [] {
-    std::array<std::uint8_t, 2 * kBins> steps{};
-    for (std::size_t i = kBins; i < steps.size(); ++i) steps[i] = 1;
-    return steps;
-}();
-
-/// How many boxes begin, and how many end, in each bin along each axis or in one before.
-class Bins {
-public:
-    Bins(const Bounds3& held, const Vec3& per_unit) {
-        // Words that are no sides look like denormal numbers, which are slow to multiply.
-        origin_[kSides] = origin_[kSides + 1] = 1;
-        for (int axis = 0; axis < 3; ++axis) {
-            origin_[axis] = origin_[3 + axis] = held.lo[axis];
-            scale_[axis] = scale_[3 + axis] = per_unit[axis];
-            at_end_[3 + axis] = 1;
-        }
-    }
-
-    /// Of every stride-th reference.
-    HWY_INLINE void count(std::span<const KdReference> references, std::size_t stride) {
-        constexpr std::size_t kFitByte = 255;
-        for (std::size_t k = 0; k < references.size(); k += kFitByte * stride) {
-            const auto few = references.subspan(k, std::min(kFitByte * stride, references.size() - k));
-            count_few(few, stride, k == 0);
-        }
-    }
-
-    std::int32_t begun(std::size_t axis, std::size_t bin) const { return counts_[axis][bin]; }
-    std::int32_t ended(std::size_t axis, std::size_t bin) const { return counts_[3 + axis][bin]; }
-
-private:
-    HWY_INLINE void count_few(std::span<const KdReference> references, std::size_t stride, bool first) {
-        const ByteTag db;
-        hn::Vec<ByteTag> counts[kSides][kBins / kBytes];
-        for (auto& side : counts) {
-            for (auto& part : side) part = hn::Zero(db);
-        }
-        const auto add = [&](std::size_t side, std::uint32_t bins_left) HWY_ATTR {
-            const std::uint8_t* const step = kSteps.data() + bins_left;
-            for (std::size_t i = 0; i < kBins / kBytes; ++i)
-                counts[side][i] = hn::Add(counts[side][i], hn::LoadU(db, step + i * kBytes));
-        };
-        for (std::size_t k = 0; k < references.size(); k += stride) {
-            alignas(32) std::uint32_t left[8];
-            for (std::size_t i = 0; i < kSides; i += kBoxLanes) bins_left(&references[k].box.lo.x, i, left);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const std::uint32_t end = left[3 + axis] & kLeftMask;
-                add(axis, std::max(left[axis] & kLeftMask, end));
-                add(3 + axis, end);
-            }
-        }
-        for (std::size_t side = 0; side < kSides; ++side) {
-            alignas(32) std::uint8_t bytes[kBins];
-            for (std::size_t i = 0; i < kBins / kBytes; ++i) hn::Store(counts[side][i], db, bytes + i * kBytes);
-            auto& sum = counts_[side];
-            for (std::size_t bin = 0; bin < kBins; ++bin) sum[bin] = first ? bytes[bin] : sum[bin] + bytes[bin];
-        }
-    }
-
-    /// kBins less the bin of each side, in the last bits.
-    HWY_INLINE void bins_left(const float* box, std::size_t i, std::uint32_t* left) const {
-        const BoxTag d;
-        const Boxes bins = hn::Mul(hn::Sub(hn::LoadU(d, box + i), hn::Load(d, origin_ + i)), hn::Load(d, scale_ + i));
-        const Boxes at = hn::Min(bins, hn::Set(d, float{kBins})), whole = hn::Floor(at);
-        // A box that ends at a plane is not above it: its end is in the bin before.
-        const Boxes back = hn::IfThenElseZero(hn::Eq(whole, at), hn::Load(d, at_end_ + i));
-        const Boxes bin = hn::Max(hn::Sub(whole, back), hn::Zero(d));
-        hn::Store(hn::BitCast(hn::RebindToUnsigned<BoxTag>(), hn::Sub(hn::Set(d, kWhole + kBins), bin)),
-                  hn::RebindToUnsigned<BoxTag>(), left + i);
-    }
-
-    /// A whole number that is added to this one stands in the last bits of the sum.
-    static constexpr float kWhole = 0x1p23f;
-    static constexpr std::uint32_t kLeftMask = 0xff;
-
-    alignas(64) std::array<std::array<std::int32_t, kBins>, kSides> counts_;  ///< Beginnings of three axes, then ends.
-    alignas(32) BoxRow origin_{}, scale_{}, at_end_{};
-};
-
 HWY_INLINE Bounds3 bounds_of(std::span<const KdReference> references) {
     const BoxTag d;
     alignas(32) BoxRow lo, hi;
@@ -295,7 +118,78 @@ HWY_INLINE Bounds3 bounds_of(std::span<const KdReference> references) {
     return {{lo[0], lo[1], lo[2]}, {hi[3], hi[4], hi[5]}};
 }
 
-/// Planes at equal distances over what the node holds, so that the outermost cut off empty space.
+/// The sides of boxes across an axis that lie between two planes, in their order.
+class NearSides {
+public:
+    NearSides(std::span<const KdReference> references, int axis, float first, float last) : boxes_(references.size()) {
+        for (const KdReference& reference : references) {
+            const float begin = begin_of(reference.box, axis), end = reference.box.hi[axis];
+            begins_[begun_] = begin;
+            ends_[ended_] = end;
+            begun_ += begin > first && begin < last ? 1 : 0;
+            ended_ += end > first && end < last ? 1 : 0;
+            begun_before_ += begin <= first ? 1 : 0;
+            ended_before_ += end <= first ? 1 : 0;
+            if (begun_ == kMost || ended_ == kMost) return;
+        }
+        std::sort(begins_, begins_ + begun_);
+        std::sort(ends_, ends_ + ended_);
+    }
+
+    /// Whether there are more than find room.
+    bool too_many() const { return begun_ == kMost || ended_ == kMost; }
+
+    /// Room for what write_planes writes, and for whole vectors.
+    static constexpr std::size_t kPlanes = 2 << 11, kRoom = kPlanes + 16;
+
+    /// Each plane at which a side lies, and the numbers of boxes below and above it. Returns how many there are.
+    std::size_t write_planes(float* planes, std::int32_t* below, std::int32_t* above) const {
+        std::size_t count = 0;
+        for (std::size_t b = 0, e = 0; b < begun_ || e < ended_; ++count) {
+            const bool is_begin = e == ended_ || (b < begun_ && begins_[b] < ends_[e]);
+            const float plane = is_begin ? begins_[b] : ends_[e];
+            while (e < ended_ && ends_[e] == plane) ++e;
+            planes[count] = plane;
+            below[count] = static_cast<std::int32_t>(begun_before_ + b);
+            above[count] = static_cast<std::int32_t>(boxes_ - ended_before_ - e);
+            while (b < begun_ && begins_[b] == plane) ++b;
+        }
+        return count;
+    }
+
+private:
+    static constexpr std::size_t kMost = kPlanes / 2;
+
+    std::size_t boxes_;
+    std::size_t begun_ = 0, ended_ = 0;                ///< How many sides there are.
+    std::size_t begun_before_ = 0, ended_before_ = 0;  ///< Sides at the first plane or before it.
+    float begins_[kMost], ends_[kMost];
+};
+
+/// `cut` becomes the cheapest plane between two others at which a box begins or ends, if that is cheaper.
+HWY_INLINE void refine(std::span<const KdReference> references, const Bounds3& cell, float step_cost, float first,
+                       float last, KdCut& cut) {
+    const NearSides sides(references, cut.axis, first, last);
+    if (sides.too_many()) return;
+    alignas(64) float planes[NearSides::kRoom];
+    alignas(64) std::int32_t below[NearSides::kRoom], above[NearSides::kRoom];
+    const std::size_t count = sides.write_planes(planes, below, above);
+    std::fill_n(planes + count, kDoubles, cell.lo[cut.axis]);
+    std::fill_n(below + count, kDoubles, 0);
+    std::fill_n(above + count, kDoubles, 0);
+    CutSearch search(cell, 1, step_cost);
+    const CutSearch::Across across = search.across(cut.axis);
+    for (std::size_t k = 0; k < count; k += kDoubles)
+        search.consider(across, planes + k, below + k, above + k, hn::Iota(DoubleTag(), static_cast<double>(k)));
+    const CutSearch::Best best = search.best();
+    if (best.cost >= cut.cost) return;
+    cut.plane = planes[best.number];
+    cut.cost = best.cost;
+    cut.duplicates = static_cast<std::size_t>(below[best.number] + above[best.number]) - references.size();
+}
+
+/// Planes at equal distances over what the node holds, so that the outermost cut off empty space; then, where all
+/// references are counted, those between the neighbours of the best at which a box begins or ends.
 HWY_INLINE std::optional<KdCut> search_binned(std::span<const KdReference> references, const Bounds3& cell,
                                               float step_cost) {
     const std::size_t stride = std::max<std::size_t>(1, references.size() / kCounted);
@@ -343,10 +237,16 @@ HWY_INLINE std::optional<KdCut> search_binned(std::span<const KdReference> refer
     const CutSearch::Best best = search.best();
     if (best.cost == INFINITY) return {};
     const std::size_t axis = best.number / kRoom, i = best.number % kRoom;
-    return KdCut{.axis = static_cast<int>(axis),
-                 .plane = planes[axis][i],
-                 .cost = best.cost,
-                 .duplicates = static_cast<std::size_t>(weight * (below[axis][i] + above[axis][i] - all))};
+    KdCut cut{.axis = static_cast<int>(axis),
+              .plane = planes[axis][i],
+              .cost = best.cost,
+              .duplicates = static_cast<std::size_t>(weight * (below[axis][i] + above[axis][i] - all))};
+    if (stride == 1) {
+        const float before = i > 0 ? planes[axis][i - 1] : cell.lo[cut.axis];
+        const float behind = i < kBins ? planes[axis][i + 1] : cell.hi[cut.axis];
+        refine(references, cell, step_cost, before, behind, cut);
+    }
+    return cut;
 }
 
 HWY_ATTR std::optional<KdCut> find_cut(std::span<const KdReference> references, const Bounds3& cell, float step_cost) {

@@ -192,17 +192,20 @@ double cost_of_cut(const Bounds3& cell, const std::vector<Bounds3>& boxes, int a
     return (below == 0 || above == 0 ? 0.8 : 1.0) * (1 + tests);
 }
 
-/// Over the ends of all boxes where there are few, else at 32 equal parts of what they span.
+/// Over the ends of all boxes where there are few, else at 32 equal parts of what they span. A flat box begins before its
+/// plane.
 double cheapest_cut(const Bounds3& cell, const std::vector<Bounds3>& boxes) {
+    constexpr std::size_t kFew = 64;
     Bounds3 held;
     for (const Bounds3& box : boxes) held.extend(box);
     double cheapest = INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<float> planes{held.lo[axis], held.hi[axis]};
         for (const Bounds3& box : boxes) {
-            if (boxes.size() <= 32) planes.insert(planes.end(), {box.lo[axis], box.hi[axis]});
+            const float lo = box.lo[axis], hi = box.hi[axis];
+            if (boxes.size() <= kFew) planes.insert(planes.end(), {lo < hi ? lo : std::nextafter(lo, -INFINITY), hi});
         }
-        for (int k = 1; k < 32 && boxes.size() > 32; ++k)
+        for (int k = 1; k < 32 && boxes.size() > kFew; ++k)
             planes.push_back(glm::mix(held.lo[axis], held.hi[axis], static_cast<float>(k) / 32));
         for (const float plane : planes) cheapest = std::min(cheapest, cost_of_cut(cell, boxes, axis, plane));
     }
