@@ -77,7 +77,9 @@ double least_between(const std::vector<KdReference>& references, const Bounds3& 
     return least;
 }
 
-bool about(double a, double b) { return std::abs(a - b) <= 1e-12 * b; }
+bool about(double a, double b) {
+    return std::abs(a - b) <= 1e-12 * b;
+}
 
 /// What the cheapest cut may cost: of as good bins each may be the one beside which it lies.
 std::vector<double> least_costs(const std::vector<KdReference>& references, const Bounds3& cell) {
@@ -125,8 +127,7 @@ TEST(SahCut, IsTheCheapestWithEveryInstructionSet) {
                 if (!cut) continue;
                 EXPECT_TRUE(std::ranges::any_of(least, [&](double cost) { return about(cut->cost, cost); }))
                     << isa << ' ' << count << ": " << cut->cost << " instead of " << least.front();
-                EXPECT_TRUE(about(cut->cost, cost_of(references, cell, cut->axis, cut->plane)))
-                    << isa << ' ' << count;
+                EXPECT_TRUE(about(cut->cost, cost_of(references, cell, cut->axis, cut->plane))) << isa << ' ' << count;
                 const Sides sides = sides_of(references, cut->axis, cut->plane);
                 EXPECT_EQ(cut->duplicates, sides.below + sides.above - count) << isa << ' ' << count;
             }
