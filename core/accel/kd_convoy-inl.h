@@ -163,7 +163,7 @@ private:
         visits_ = 0;
     }
 
-    static constexpr std::size_t kFew = (kLanes + 1) / 2, kVisits = 4 * kLanes;
+    static constexpr std::size_t kFew = kLanes / 4 + 1, kVisits = 4 * kLanes;
 
     std::size_t first_ = 0;
     alignas(64) LaneAxes origin_, inverse_, overlap_;
@@ -205,28 +205,29 @@ private:
     Convoy convoy_;
 };
 
-/// Whether rays first to first + kLanes of the block enter the tree close to each other.
-HWY_INLINE bool enter_close(const KdTree& tree, const RayBlock& block, std::size_t first) {
-    // Of the tree. With a 16th, rays from the walls around a ball took longer than alone.
-    constexpr float kPart = 1.0f / 32;
+/// Whether rays first to first + kLanes of the block, of one dominant axis, enter the tree close to each other and stay so:
+/// the wider apart they enter, the less their slopes may differ.
+HWY_INLINE bool stay_close(const KdTree& tree, const RayBlock& block, std::size_t first) {
+    // A sixteenth of the tree apart they must be parallel. Rays from the walls of a room around a ball take longer together.
+    constexpr float kPerPart = 8, kMost = 1.0f / 2;
     const FloatTag d;
     const auto load = [&](const float* values) HWY_ATTR { return hn::LoadU(d, values + first); };
     const Floats begin = load(block.begin);
     const FloatMask open = hn::And(hn::FirstN(d, block.size - first), hn::Le(begin, load(block.end)));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Floats at = load(block.origin[axis]) + begin / load(block.inverse[axis]);
-        const auto component = static_cast<Vec3::length_type>(axis);
-        if (!(spread(at, open) <= kPart * (tree.bounds.hi[component] - tree.bounds.lo[component]))) return false;
-    }
-    return true;
+    float apart = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        apart = std::max(apart, spread(load(block.origin[axis]) + begin / load(block.inverse[axis]), open));
+    const float turn =
+        std::max(spread(demoted(block.shear_x + first), open), spread(demoted(block.shear_y + first), open));
+    return kPerPart * apart / rayuela::max_component(tree.bounds.extent()) + turn <= kMost;
 }
 
-/// Whether most neighbours of the block, by a sample, enter the tree close to each other and go the same way.
+/// Whether most neighbours of the block, by a sample, go through the tree close to each other.
 HWY_INLINE bool go_together(const KdTree& tree, const RayBlock& block) {
     constexpr std::size_t kEvery = 4 * kLanes;
     int together = 0;
     for (std::size_t first = 0; first < block.size; first += kEvery) {
-        const bool alike = Packet(block, first).coherent(tree.bounds) && enter_close(tree, block, first);
+        const bool alike = Packet(block, first).coherent(tree.bounds) && stay_close(tree, block, first);
         together += alike ? 1 : -1;
     }
     return together > 0;

@@ -22,6 +22,8 @@ namespace rayuela::HWY_NAMESPACE {
 constexpr std::size_t kExactLimit = 64;
 /// Of larger nodes every so many-th reference is counted that at least so many are: planes are as good.
 constexpr std::size_t kCounted = 1 << 13;
+/// Cuts that cost so many times as much as the best may become the best when they are refined.
+constexpr double kRefined = 1.1;
 
 /// Where a box begins for a cut: a flat one before the plane in which it lies, so that it is below it.
 HWY_INLINE float begin_of(const Bounds3& box, int axis) {
@@ -188,65 +190,107 @@ HWY_INLINE void refine(std::span<const KdReference> references, const Bounds3& c
     cut.duplicates = static_cast<std::size_t>(below[best.number] + above[best.number]) - references.size();
 }
 
-/// Planes at equal distances over what the node holds, so that the outermost cut off empty space; then, where all
-/// references are counted, those between the neighbours of the best at which a box begins or ends.
-HWY_INLINE std::optional<KdCut> search_binned(std::span<const KdReference> references, const Bounds3& cell,
-                                              float step_cost) {
-    const std::size_t stride = std::max<std::size_t>(1, references.size() / kCounted);
-    const std::size_t counted = (references.size() + stride - 1) / stride;
-    const double weight = static_cast<double>(references.size()) / static_cast<double>(counted);
-    const auto all = static_cast<std::int32_t>(counted);
-    CutSearch search(cell, weight, step_cost);
-    const Bounds3 held = bounds_of(references);
-    const Vec3 per_unit = float{kBins} / (held.hi - held.lo);
-    Bins bins(held, per_unit);
-    bins.count(references, stride);
-    // Room for whole vectors.
-    constexpr std::size_t kRoom = kBins + 16;
-    alignas(64) float planes[3][kRoom];
-    alignas(64) std::int32_t below[3][kRoom], above[3][kRoom];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<int>(axis);
+/// Planes at equal distances over what a node holds, so that the outermost cut off empty space.
+class BinnedPlanes {
+public:
+    BinnedPlanes(std::span<const KdReference> references, const Bounds3& cell, float step_cost)
+        : references_(references),
+          cell_(cell),
+          step_cost_(step_cost),
+          stride_(std::max<std::size_t>(1, references.size() / kCounted)),
+          counted_(static_cast<std::int32_t>((references.size() + stride_ - 1) / stride_)),
+          held_(bounds_of(references)),
+          per_unit_(float{kBins} / (held_.hi - held_.lo)),
+          bins_(held_, per_unit_) {
+        bins_.count(references, stride_);
+    }
+
+    /// A cut and the planes beside it.
+    struct Found {
+        KdCut cut;
+        float before, behind;
+    };
+
+    bool all_are_counted() const { return stride_ == 1; }
+
+    /// The cheapest of those across an axis.
+    HWY_INLINE std::optional<Found> search(int axis) const {
         // Axes too flat or too long to be divided in float are left alone.
-        if (!(per_unit[a] > 0 && per_unit[a] < INFINITY)) continue;
+        if (!(per_unit_[axis] > 0 && per_unit_[axis] < INFINITY)) return {};
+        // Room for whole vectors.
+        constexpr std::size_t kRoom = kBins + 16;
+        alignas(64) float planes[kRoom];
+        alignas(64) std::int32_t below[kRoom], above[kRoom];
+        write_planes(axis, planes, below, above);
+        const double weight = static_cast<double>(references_.size()) / counted_;
+        CutSearch search(cell_, weight, step_cost_);
+        const CutSearch::Across across = search.across(axis);
+        for (std::size_t k = 0; k <= kBins; k += kDoubles)
+            search.consider(across, planes + k, below + k, above + k, hn::Iota(DoubleTag(), static_cast<double>(k)));
+        const auto [cost, i] = search.best();
+        if (cost == INFINITY) return {};
+        return Found{.cut = {.axis = axis,
+                             .plane = planes[i],
+                             .cost = cost,
+                             .duplicates = static_cast<std::size_t>(weight * (below[i] + above[i] - counted_))},
+                     .before = i > 0 ? planes[i - 1] : cell_.lo[axis],
+                     .behind = i < kBins ? planes[i + 1] : cell_.hi[axis]};
+    }
+
+private:
+    /// The planes, the numbers of boxes below and above each, and some that are no cuts.
+    HWY_INLINE void write_planes(int axis, float* planes, std::int32_t* below, std::int32_t* above) const {
         const FloatTag d;
         for (std::size_t k = 0; k < kBins; k += kLanes) {
-            const Floats depth = hn::Div(hn::Iota(d, static_cast<float>(k)), hn::Set(d, per_unit[a]));
-            hn::Store(hn::Add(hn::Set(d, held.lo[a]), depth), d, planes[axis] + k);
+            const Floats depth = hn::Div(hn::Iota(d, static_cast<float>(k)), hn::Set(d, per_unit_[axis]));
+            hn::Store(hn::Add(hn::Set(d, held_.lo[axis]), depth), d, planes + k);
         }
-        planes[axis][kBins] = held.hi[a];
-        std::fill_n(planes[axis] + kBins + 1, kDoubles, cell.lo[a]);
-        below[axis][0] = 0;
-        above[axis][0] = all;
+        planes[kBins] = held_.hi[axis];
+        below[0] = 0;
+        above[0] = counted_;
+        const auto a = static_cast<std::size_t>(axis);
         for (std::size_t k = 0; k < kBins; ++k) {
-            below[axis][k + 1] = bins.begun(axis, k);
-            above[axis][k + 1] = all - bins.ended(axis, k);
+            below[k + 1] = bins_.begun(a, k);
+            above[k + 1] = counted_ - bins_.ended(a, k);
         }
         // Between the outermost planes something lies on both sides, be it among what is not counted.
-        for (std::size_t k = 1; k < kBins && stride > 1; ++k) {
-            below[axis][k] = std::max(1, below[axis][k]);
-            above[axis][k] = std::max(1, above[axis][k]);
+        for (std::size_t k = 1; k < kBins && stride_ > 1; ++k) {
+            below[k] = std::max(1, below[k]);
+            above[k] = std::max(1, above[k]);
         }
-        const DoubleTag dd;
-        const CutSearch::Across across = search.across(a);
-        for (std::size_t k = 0; k <= kBins; k += kDoubles) {
-            search.consider(across, planes[axis] + k, below[axis] + k, above[axis] + k,
-                            hn::Iota(dd, static_cast<double>(axis * kRoom + k)));
-        }
+        std::fill_n(planes + kBins + 1, kDoubles, cell_.lo[axis]);
+        std::fill_n(below + kBins + 1, kDoubles, 0);
+        std::fill_n(above + kBins + 1, kDoubles, 0);
     }
-    const CutSearch::Best best = search.best();
-    if (best.cost == INFINITY) return {};
-    const std::size_t axis = best.number / kRoom, i = best.number % kRoom;
-    KdCut cut{.axis = static_cast<int>(axis),
-              .plane = planes[axis][i],
-              .cost = best.cost,
-              .duplicates = static_cast<std::size_t>(weight * (below[axis][i] + above[axis][i] - all))};
-    if (stride == 1) {
-        const float before = i > 0 ? planes[axis][i - 1] : cell.lo[cut.axis];
-        const float behind = i < kBins ? planes[axis][i + 1] : cell.hi[cut.axis];
-        refine(references, cell, step_cost, before, behind, cut);
+
+    std::span<const KdReference> references_;
+    Bounds3 cell_;
+    float step_cost_;
+    std::size_t stride_;    ///< Every so many-th reference is counted:
+    std::int32_t counted_;  ///< So many.
+    Bounds3 held_;
+    Vec3 per_unit_;  ///< Bins by axis.
+    Bins bins_;
+};
+
+HWY_INLINE std::optional<KdCut> search_binned(std::span<const KdReference> references, const Bounds3& cell,
+                                              float step_cost) {
+    const BinnedPlanes planes(references, cell, step_cost);
+    std::optional<BinnedPlanes::Found> found[3];
+    std::optional<KdCut> best;
+    for (int axis = 0; axis < 3; ++axis) {
+        found[axis] = planes.search(axis);
+        if (found[axis] && (!best || found[axis]->cut.cost < best->cost)) best = found[axis]->cut;
     }
-    return cut;
+    if (!best || !planes.all_are_counted()) return best;
+    // Others do not become cheaper than the best.
+    const double most = kRefined * best->cost;
+    for (std::optional<BinnedPlanes::Found>& one : found) {
+        if (!one || one->cut.cost > most) continue;
+        refine(references, cell, step_cost, one->before, one->behind, one->cut);
+        if (one->cut.cost < best->cost) best = one->cut;
+    }
+    return best;
 }
 
 HWY_ATTR std::optional<KdCut> find_cut(std::span<const KdReference> references, const Bounds3& cell, float step_cost) {
